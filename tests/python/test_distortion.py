@@ -215,6 +215,9 @@ def test_the_tip_of_a_distorted_machine_keeps_the_speed_limit(machine):
     stretch = np.hypot(np.diff(true_x), np.diff(true_y)) / np.hypot(np.diff(x), np.diff(y))
     assert stretch.max() > 1.01
     assert stretch.max() * float(feed) / 60 <= brush.max_speed_mm_s
+    faster = text.replace(f"F{feed}", f"F{60 * brush.max_speed_mm_s:g}")
+    checked = simulate_program.simulate_program(read_program(faster, ".ngc", cell), brush, cell, plan.sheet_mm)
+    assert {each.code for each in checked.problems} == {"speed-out-of-range"}
 
 
 def test_a_limit_that_the_language_cannot_command_is_refused():

@@ -13,7 +13,7 @@ from .cells.cell import Cell, reason_for_no_waiting, robot_from_paper
 from .cells.language_limits import LEAST_SPEED_MM_S
 from .job_program import find_moves_out_of_arm, find_moves_out_of_limits
 from .limits.move_extents import make_paths
-from .limits.speeds import touching_mm_s
+from .limits.speeds import commanded_touching_mm_s, touching_mm_s
 from .limits.vessels import find_vessels_near_travel
 from .limits.workspace import find_broken_limits
 from .moves import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
@@ -211,7 +211,7 @@ def make_height_program(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_m
             f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe_mm - 0.5:g}] mm below safe height",
             code="height-out-of-range",
         )
-    speed = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
+    speed = min(commanded_touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     if speed < (min_mm_s := LEAST_SPEED_MM_S.get(cell.language, 0.0)):
         raise Error(
             f"speed {speed:.4g} mm/s of brush {brush.name} is outside the range [{min_mm_s:g}, {TEST_SPEED_MM_S:g}] "
@@ -240,7 +240,7 @@ def slow_below_mm(highest_mm: float, cell: Cell) -> float:
 
 def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -> tuple[Move, ...]:
     """Make the moves of a stroke between two ends (x, y) [mm] at one height."""
-    speed_mm_s = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
+    speed_mm_s = min(commanded_touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
     path = in_lines_mm(np.vstack([point_above(end, height_mm) for end in ends]), cell.machine)
     commanded = commanded_mm(path, cell.machine)

@@ -18,7 +18,7 @@ from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, least_move_mm, r
 from ..machine.frames import is_upright, transform_points
 from ..machine.limits.move_extents import make_paths
 from ..machine.limits.paint_on_sheet import find_paint_off_sheet
-from ..machine.limits.speeds import touching_mm_s
+from ..machine.limits.speeds import commanded_touching_mm_s, touching_mm_s
 from ..machine.limits.vessels import find_vessels_entered, find_vessels_near_travel
 from ..machine.limits.workspace import broken_limits, check_first_rise, find_broken_limits, find_limits_broken_between
 from ..machine.pen_changes import may_pause, pen
@@ -485,7 +485,7 @@ def _check_moves(
     if not len(track.points):
         return
     slack, safe = slack_mm(cell), cell.heights.safe_mm
-    limit = touching_mm_s(brush, cell)
+    limit = _max_touching_mm_s(section, brush, cell)
     steps = [section.steps[number] for number in track.step]
     rapid = np.array([step.rapid for step in steps])
     speed = np.array([step.speed_mm_s for step in steps])
@@ -523,6 +523,11 @@ def _rapid_notice(step: Step, where: str = "") -> Notice:
     return Notice("", sentence, code="rapid-too-low")
 
 
+def _max_touching_mm_s(section: ReadSection, brush, cell: Cell) -> float:
+    """Return the highest commanded speed while the brush touches; only strokes are corrected for the machine."""
+    return (commanded_touching_mm_s if _match_stroke_title(section) else touching_mm_s)(brush, cell)
+
+
 def _speed_notice(step: Step, limit: float) -> Notice:
     speed = f"speed {step.speed_mm_s:.1f} mm/s while the brush touches, limit {limit:.1f} mm/s"
     return Notice("", f"line {step.line}: {speed}", code="speed-out-of-range")
@@ -535,7 +540,7 @@ def _check_backlash(
 
     An axis must take up its backlash before the brush touches. While the brush touches, its speed is limited.
     """
-    top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
+    top_mm, limit = paper_mm + slack_mm(cell), _max_touching_mm_s(section, brush, cell)
     places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)
     places = transform_points(np.linalg.inv(frame), places)
     heights = (true_mm(places, cell.machine) if _match_stroke_title(section) else places)[:, 2]
