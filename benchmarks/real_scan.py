@@ -18,9 +18,10 @@ import cv2
 import numpy as np
 
 from brushsvg.geometry.rings import signed_area
-from brushsvg.photo.edges import StrokeBox, find_marks
+from brushsvg.photo.edges import find_marks
 from brushsvg.photo.flatten import Flat
 from brushsvg.photo.photo import read_photo
+from brushsvg.photo.stroke_boxes import StrokeBox
 
 BAR_MM = 50.8
 SHRUNK = 4  # factor by which the picture is reduced for the search of the grid

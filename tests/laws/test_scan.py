@@ -25,10 +25,11 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.photograph import get_expected_errors, list_measured_marks, read_chart_photos
 from brushsvg.cli import main
-from brushsvg.photo.edges import StrokeBox, assign_marks, paint_seen
+from brushsvg.photo.edges import assign_marks, paint_seen
 from brushsvg.photo.flatten import Flat
 from brushsvg.photo.markers import Printed, find_view
 from brushsvg.photo.photo import read_photo
+from brushsvg.photo.stroke_boxes import StrokeBox
 
 A5 = (148.0, 210.0)
 SMALL = Camera(size_px=(950, 1300), blur_px=0.6)  # 5.5 pixels per mm

@@ -19,7 +19,8 @@ from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.model.confidence import learned_of
 from brushsvg.model.describe import one_line
-from brushsvg.model.library import SHIPPED, brush_like, brush_names, find_brush, save_brush, unknown_keys
+from brushsvg.model.library import SHIPPED, brush_like, brush_names, find_brush, save_brush
+from brushsvg.model.unknown_keys import unknown_keys
 
 ROOT = Path(__file__).parents[2]
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")

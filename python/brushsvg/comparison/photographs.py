@@ -15,11 +15,12 @@ import numpy as np
 from ..calibration.chart.page import bar_rings, label_box
 from ..errors import Error, Notice
 from ..geometry.rings import centroid
-from ..photo.edges import StrokeBox, paint_seen, printed_pixels
+from ..photo.edges import paint_seen, printed_pixels
 from ..photo.flatten import Flat, flatten
 from ..photo.markers import Printed, View, find_view
 from ..photo.photo import read_photo, refuse_twice
 from ..photo.photo_checks import refuse_cropped, refuse_unsure
+from ..photo.stroke_boxes import StrokeBox
 from .corrections import MIN_MARKS
 from .job_page import JobPage, box_ring
 from .placing import NOWHERE, Canvas, Placed, grow_rings, locate_mark

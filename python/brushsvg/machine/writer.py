@@ -31,7 +31,7 @@ from .pen_changes import report_single_pen
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush
 from .realised.backlash import compensate_backlash
-from .realised.smooth_field import beyond_field
+from .realised.displacement_field import beyond_field
 
 
 def post_for(suffix: str, cell: Cell) -> Post:

@@ -14,6 +14,8 @@ from ..geometry.rings import signed_area
 from .flatten import Flat
 from .mask_contours import mask_outlines
 from .photo import LIGHT, grey_light, refuse_grainy
+from .photo_checks import refuse_covered, refuse_displaced, refuse_elsewhere
+from .stroke_boxes import MIN_SPLIT_MM2, MIN_SPLIT_SHARE, StrokeBox, box_pixels
 
 MAX_PAINT_WIDTH_MM = 31  # a darker area that is narrower than this is paint; a wider one is uneven light
 MIN_BARE_LIGHT_RATIO = 0.92  # of the surrounding light: a darker pixel is not bare paper
@@ -23,14 +25,6 @@ MAX_STRAY_MM = 6.0  # greatest distance of a mark from its box
 MIN_CONTRAST = 0.12  # smallest share of the light that paint absorbs
 MIN_CONTRAST_TO_NOISE = 6.0  # smallest contrast of paint, in standard deviations of the paper's noise
 SEEN = 0.3  # of the usual paint: a pixel with more is part of a mark; each mark's edge has its own level
-# A part of the paint with this share and area in the box of another stroke is a mark of that stroke as well.
-MIN_SPLIT_SHARE, MIN_SPLIT_MM2 = 0.15, 3.0
-# Strokes that one piece of paint may cover. With more, it is a shadow or an object on the page.
-MAX_JOINED_STROKES = 2
-MAX_TOUCHING_SHARE = 0.25  # of the strokes: if more touch, this is not one painting of this chart
-# Of the paint: if the strokes' boxes hold this much more of it when turned, the page was turned by 180 degrees.
-MIN_TURNED_EXCESS = 0.1
-MIN_SHARE_IN_BOXES = 0.7  # smallest share of the paint inside the strokes' boxes
 MAX_LEAN_MM_PER_MM = 1.5  # displacement per depth of a leaning tool, with the same limit as in a cell
 MAX_MISSING_SHARE = 0.5  # of the strokes
 MIN_PART_MM2 = 0.5
@@ -44,19 +38,6 @@ MAX_BLUR_FACTOR = 1.3  # largest ratio of a narrow mark's real paint to the pain
 EDGE_MM = 0.8  # distance from a mark within which its edge is searched
 # Distance between the points of an outline, and the length over which each is averaged to remove pixel steps.
 OUTLINE_STEP_MM, OUTLINE_MEAN_MM = 0.1, 0.2
-
-
-@dataclass(frozen=True)
-class StrokeBox:
-    """The box in which the mark of a stroke is expected.
-
-    box_mm: left, bottom, right, top on the sheet; depth_mm: depth of the brush, which displaces the mark where the tool
-    leans. With 0, no displacement is estimated.
-    """
-
-    stroke: str
-    box_mm: tuple[float, float, float, float]
-    depth_mm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -106,7 +87,7 @@ def paint_seen(flat: Flat, is_printed: np.ndarray, stroke_boxes: list[StrokeBox]
     light = cv2.LUT(flat.pixels, LIGHT)
     printed = is_printed.copy()
     for box in labels_mm:
-        c0, r0, c1, r1 = _box_pixels(flat, box, 0.5)
+        c0, r0, c1, r1 = box_pixels(flat, box, 0.5)
         printed[r0:r1, c0:c1] = 1
     paper, is_lighter = _estimate_paper_light(light, printed, flat.px_per_mm)
     absorbed = 1.0 - light / np.maximum(paper, 1e-3)
@@ -114,7 +95,7 @@ def paint_seen(flat: Flat, is_printed: np.ndarray, stroke_boxes: list[StrokeBox]
         absorbed = -absorbed
     inside = np.zeros_like(is_printed)
     for stroke_box in stroke_boxes:
-        c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.0)
+        c0, r0, c1, r1 = box_pixels(flat, stroke_box.box_mm, 0.0)
         inside[r0:r1, c0:c1] = 1
     sample = absorbed[::3, ::3][(inside[::3, ::3] == 1) & (is_printed[::3, ::3] == 0)]
     weights = _paint_weights(sample)
@@ -195,19 +176,6 @@ NO_PAINT_MESSAGE = (
     "no paint was found where the strokes should be: check that this is the painted page, and that the colour of the "
     "paint differs from the paper"
 )
-
-
-def _box_pixels(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, int]:
-    """Return the pixel columns and rows of an enlarged box: left, top, right, bottom."""
-    left, bottom, right, top = box_mm
-    rows, columns = flat.pixels.shape[:2]
-    (c0, r0), (c1, r1) = flat.to_px([[left - beyond_mm, top + beyond_mm], [right + beyond_mm, bottom - beyond_mm]])
-    return (
-        int(np.clip(np.floor(c0), 0, columns)),
-        int(np.clip(np.floor(r0), 0, rows)),
-        int(np.clip(np.ceil(c1), 0, columns)),
-        int(np.clip(np.ceil(r1), 0, rows)),
-    )
 
 
 def _number_nearest_boxes(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarray:
@@ -315,7 +283,7 @@ def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeB
     areas = stats[:, cv2.CC_STAT_AREA].astype(float)
     is_text = np.zeros(part.shape, bool)
     for box in labels_mm:
-        c0, r0, c1, r1 = _box_pixels(flat, box, 0.2)
+        c0, r0, c1, r1 = box_pixels(flat, box, 0.2)
         is_text[r0:r1, c0:c1] = True
     text_areas = np.bincount(part[is_text], minlength=count)
     is_kept = (areas > 0.5 * MIN_PART_MM2 * px_per_mm**2) & (text_areas < 0.7 * areas)
@@ -328,9 +296,9 @@ def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeB
     is_cut = is_reaching & _is_separate_mark(
         _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept), areas, px_per_mm
     )
-    _refuse_covered(areas_in_boxes, areas, is_reaching, stroke_boxes, px_per_mm)
-    _refuse_elsewhere(is_kept[part], flat, stroke_boxes)
-    _refuse_displaced(areas_in_boxes, is_reaching, stroke_boxes)
+    refuse_covered(areas_in_boxes, areas, is_reaching, stroke_boxes, px_per_mm)
+    refuse_elsewhere(is_kept[part], flat, stroke_boxes)
+    refuse_displaced(areas_in_boxes, is_reaching, stroke_boxes)
     usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
     for number, stroke_box in enumerate(stroke_boxes, 1):
@@ -384,67 +352,6 @@ def _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept) -> np.ndarr
     foreign[:, 0] = 0
     foreign[foreign < largest_marks] = 0
     return foreign.max(axis=1)
-
-
-def _refuse_displaced(areas_in_boxes, reaching: np.ndarray, stroke_boxes: list[StrokeBox]) -> None:
-    """Refuse a sheet with too many marks that touch or are displaced; reaching: parts in several boxes."""
-    touching = np.unique(np.argsort(areas_in_boxes[reaching, 1:], axis=1)[:, -2:])
-    if len(touching) > MAX_TOUCHING_SHARE * len(stroke_boxes):
-        raise Error(
-            f"{len(touching)} of {len(stroke_boxes)} marks touch each other or reach the place of another mark, at "
-            f"most {int(MAX_TOUCHING_SHARE * len(stroke_boxes))} may. Check that this chart was painted on this page, "
-            "and only once, that the page was at its stop, that it was printed at 100 % (measure its bar), and that "
-            "the chart is for a brush of this width",
-            value=len(touching),
-            code="photo-paint-elsewhere",
-        )
-
-
-def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox], px_per_mm: float) -> None:
-    """Refuse a shadow or object that covers many strokes' boxes; several: parts in several boxes."""
-    widest = max(
-        (stroke_box.box_mm[2] - stroke_box.box_mm[0]) * (stroke_box.box_mm[3] - stroke_box.box_mm[1])
-        for stroke_box in stroke_boxes
-    )
-    for number in np.flatnonzero(several):
-        large = np.flatnonzero(
-            areas_in_boxes[number, 1:] > np.maximum(0.5 * MIN_SPLIT_SHARE * areas[number], MIN_SPLIT_MM2 * px_per_mm**2)
-        )
-        if len(large) > MAX_JOINED_STROKES and areas[number] > widest * px_per_mm**2:
-            names = ", ".join(stroke_boxes[k].stroke for k in large)
-            raise Error(
-                f"a dark area of {areas[number] / px_per_mm**2 / 100:.0f} cm^2 covers the places of {len(large)} "
-                f"strokes ({names}). It is a shadow, an object on the page, or smeared paint: remove it, and "
-                "photograph the page in even light",
-                value=len(large),
-                code="photo-covered",
-            )
-
-
-def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> None:
-    """Refuse paint outside the strokes' boxes; painted: (rows, columns), pixels that count as paint."""
-    is_in_box = np.zeros(painted.shape, bool)
-    for stroke_box in stroke_boxes:
-        c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.5)
-        is_in_box[r0:r1, c0:c1] = True
-    total = max(int(painted.sum()), 1)
-    inside_share, turned_share = ((painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1]))
-    if turned_share > inside_share + MIN_TURNED_EXCESS:
-        raise Error(
-            f"the page was painted upside down: {100 * turned_share:.0f} % of the paint is at the places of strokes "
-            f"on a page turned by 180 degrees, and only {100 * inside_share:.0f} % on this page. Turn the page before "
-            "you paint it",
-            value=turned_share,
-            code="photo-paint-elsewhere",
-        )
-    if inside_share < MIN_SHARE_IN_BOXES:
-        raise Error(
-            f"only {100 * inside_share:.0f} % of the paint is where strokes of this chart should be, at least "
-            f"{100 * MIN_SHARE_IN_BOXES:.0f} % are needed. Check that this chart was painted on this page, and only "
-            "once, that the page was at its stop, and that it was printed at 100 % (measure its bar)",
-            value=inside_share,
-            code="photo-paint-elsewhere",
-        )
 
 
 def _outlines_of_stroke(

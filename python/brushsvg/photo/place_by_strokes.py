@@ -14,9 +14,10 @@ import cv2
 import numpy as np
 
 from ..errors import Error
-from .edges import MAX_STRAY_MM, MIN_LENGTH_SHARE, SEEN, StrokeBox, paint_seen
+from .edges import MAX_STRAY_MM, MIN_LENGTH_SHARE, SEEN, paint_seen
 from .flatten import Flat
 from .markers import MIN_MARKERS, MIN_PX_PER_MM, View, detect_markers
+from .stroke_boxes import StrokeBox
 
 MM_PER_INCH = 25.4
 # Half of the pixels of a 600 dpi scan in each direction. More adds nothing about a brush, and needs gigabytes.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from .edges import SEEN, StrokeBox, paint_seen
+from .edges import SEEN, paint_seen
 from .flatten import Flat
 from .place_by_strokes import (
     COARSE_PX_PER_MM,
@@ -17,6 +17,7 @@ from .place_by_strokes import (
     match_paths,
     paint_spectrum,
 )
+from .stroke_boxes import StrokeBox
 
 # Scales of the paint relative to its page. Printers' margins shrink pages by up to a tenth.
 PAINT_SCALES = np.linspace(0.9, 1.1, 21)

@@ -13,13 +13,14 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error, Notice
-from ...photo.edges import Marks, StrokeBox, assign_marks, find_marks, printed_pixels
+from ...photo.edges import Marks, assign_marks, find_marks, printed_pixels
 from ...photo.flatten import Flat, flatten
 from ...photo.markers import TOO_WHITE, Printed, View, find_view
 from ...photo.photo import grey_light, jpeg_quality, read_photo, refuse_dark_paper, refuse_twice
 from ...photo.photo_checks import refuse_cropped, refuse_unsure
 from ...photo.place_by_strokes import find_scan_view
 from ...photo.print_scale import find_paint
+from ...photo.stroke_boxes import StrokeBox
 from .layout import Chart
 from .page import bar_rings, label_box
 

@@ -18,7 +18,8 @@ from ...machine.limits.move_extents import ROUNDING_MM
 from ...machine.limits.speeds import check_painting_speed
 from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
-from ...model.library import brush_names, find_brush, mistyped_keys
+from ...model.library import brush_names, find_brush
+from ...model.unknown_keys import mistyped_keys
 from ...planning.press_deeper import press_deeper
 from ...planning.refinement import refine_where_better
 from ...read import layout

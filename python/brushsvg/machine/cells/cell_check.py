@@ -14,7 +14,7 @@ from ..frames import normal_tilt_deg, rotation, transform_points
 from ..limits.move_extents import distances_from_origin, make_paths
 from ..limits.workspace import find_broken_limits
 from ..posts import POSTS
-from ..realised.smooth_field import max_field_slope
+from ..realised.displacement_field import max_field_slope
 from .cell import (
     DEFAULT_FANUC_CONFIGURATION,
     MIN_WALL_TILT_DEG,

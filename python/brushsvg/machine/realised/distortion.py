@@ -12,8 +12,8 @@ import numpy as np
 
 from ... import _core
 from ..cells.cell import Cell, Machine
+from .displacement_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field, max_field_slope
 from .pass_on_path import move_pass_to_path
-from .smooth_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field, max_field_slope
 
 # Error [mm] at which inverting a field stops, and largest number of rounds. Each round leaves at most a quarter of the
 # error.

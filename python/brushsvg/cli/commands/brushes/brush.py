@@ -8,7 +8,8 @@ from ...._core import remarks, write_brush
 from ....errors import Error
 from ....files import read_bytes
 from ....model.describe import LAWS, describe_brush, describe_ranges, one_line
-from ....model.library import brush_like, brush_names, find_brush, unknown_keys
+from ....model.library import brush_like, brush_names, find_brush
+from ....model.unknown_keys import unknown_keys
 from ...console import print_text, refuse_errors, warn
 from ...steps.ask_measurements import ask_measurements, warn_of_few_depths
 from ...steps.output_places import check_outputs, print_list, suffix_of, write_outputs

@@ -24,8 +24,8 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.realised.arc_chords import with_chords
+from brushsvg.machine.realised.displacement_field import beyond_field
 from brushsvg.machine.realised.distortion import commanded_mm, true_mm
-from brushsvg.machine.realised.smooth_field import beyond_field
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
 from brushsvg.verify.readback import read_program
