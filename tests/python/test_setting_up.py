@@ -94,6 +94,14 @@ def test_a_long_setup_program_is_written_in_several_files(desk):
     words = ("setup", "height", "--cell", "bumpy.toml", "--sheet", "200x200", "--step", "0.021", "-o", "own.script")
     assert main([*words, "--force"]) == 0
     assert Path("own-part2.script").read_bytes() == Path("py-part2.script").read_bytes()
+    assert "programs-of-before" not in {notice.code for notice in made.notices}
+    # Shorter programs at the same path leave the second part there. Nobody should run it.
+    for shorter in (
+        brushsvg.setup_height(cell, "py.script", sheet=(200, 200)),
+        brushsvg.convert("word.svg", "py.script", cell=cell),
+    ):
+        (named,) = [notice for notice in shorter.notices if notice.code == "programs-of-before"]
+        assert "py-part2.script" in named.sentence
 
 
 def test_setup_programs_are_also_written_in_a_binary_format(desk):

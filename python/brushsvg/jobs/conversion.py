@@ -19,6 +19,7 @@ from ..files import write_files
 from ..machine import preflight, writer
 from ..machine.cells.cell import Cell
 from ..machine.job_program import WHOLE_JOB, CheckedProgram, Job
+from ..machine.leftover_programs import report_leftover_programs
 from ..machine.moves import duration_s
 from ..machine.paint_reload import PlanInLoads, fetched_mm, split_into_loads
 from ..machine.posts import POSTS
@@ -269,7 +270,8 @@ def _make_conversion(
             files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured_figures)
     cell_notices = writer.list_cell_notices(cell) if any(each.is_program for each in simulations.values()) else []
     remarks = dict.fromkeys(remark for each in simulations.values() for remark in each.remarks())
-    notices = (*ignored, *first_simulation.work.notices, *remarks, *cell_notices)
+    leftover = report_leftover_programs(out, files) if out is not None else []
+    notices = (*ignored, *first_simulation.work.notices, *remarks, *cell_notices, *leftover)
     conversion = Conversion(
         work.title, first_simulation.work.plan, notices, first_simulation.time_s(), texts, measured_figures
     )

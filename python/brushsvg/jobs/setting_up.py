@@ -17,6 +17,7 @@ from ..files import write_files
 from ..machine import header_lines, preflight, setup_programs, writer
 from ..machine.cells.cell import Cell
 from ..machine.job_program import Job
+from ..machine.leftover_programs import report_leftover_programs
 from ..machine.limits.paint_on_sheet import job_bounds_mm
 from ..machine.moves import Program, duration_s
 from ..machine.paint_reload import split_into_loads
@@ -136,7 +137,9 @@ def _write(
     path, notices = None if out is None else os.fspath(out), []
     made = make(path, lambda _, some: notices.extend(some))
     if path is not None:
-        write_files(writer.in_files(path, made.text))
+        files = writer.in_files(path, made.text)
+        notices += report_leftover_programs(path, files)
+        write_files(files)
     return replace(made, notices=tuple(notices))
 
 

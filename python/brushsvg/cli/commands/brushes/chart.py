@@ -11,12 +11,12 @@ from ....jobs.conversion import estimate_output_time_s
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine import preflight, writer
 from ....machine.job_program import Job
+from ....machine.leftover_programs import report_leftover_programs
 from ....machine.paint_reload import split_into_loads
 from ....model.library import find_brush
 from ....notice_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
-from ...steps.leftover_programs import warn_about_leftover_programs
 from ...steps.options import (
     apply_drawing_settings,
     load_brush,
@@ -76,7 +76,7 @@ def chart_file(args) -> None:
     notices = writer.report_program(suffix, loads, brush, cell, name)
     warn(args.output, _adapt_to_paint_chart(notices) if args.paint else notices)
     warn_about_cell(args, cell)
-    warn_about_leftover_programs(args.output, files)
+    warn(args.output, report_leftover_programs(args.output, files))
     write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell))
     print_text(
         dab_chart_report(laid_out, brush) if args.dabs else chart_report(laid_out, brush, args.noise or EDGE_NOISE_MM)

@@ -16,11 +16,11 @@ from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.prepared_drawing import PreparedDrawing
 from ....machine.cells.cell import Cell
 from ....machine.job_program import Job
+from ....machine.leftover_programs import report_leftover_programs
 from ....machine.pen_changes import count_pen_changes, has_pens, may_pause
 from ....machine.writer import path_next_to, report_renamed
 from ....show.evaluation import report
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
-from ...steps.leftover_programs import warn_about_leftover_programs
 from ...steps.options import apply_drawing_settings, make_choices, warn_about_cell
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 from ...steps.prepared import prepare
@@ -53,7 +53,7 @@ def convert_file(args) -> None:
             files[args.report] = report.as_text(suffix_of(args.report), figures)
     warn(args.input, dict.fromkeys(notice for simulated in simulations for notice in simulated.remarks()))
     warn_about_cell(args, simulations[0].cell)
-    warn_about_leftover_programs(args.output, files)
+    warn(args.output, report_leftover_programs(args.output, files))
     strokes = sum(len(simulated.loads.loads) for simulated in simulations) - args.from_stroke + 1
     times_s = [simulated.time_s() for simulated in simulations]
     seconds = None if None in times_s else sum(times_s)

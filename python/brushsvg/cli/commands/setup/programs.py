@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ....jobs.choices.choices import Choices
 from ....jobs.setting_up import make_border, make_first_run, make_height
+from ....machine.leftover_programs import report_leftover_programs
 from ....machine.writer import in_files
 from ...console import refuse_errors, stage, warn
-from ...steps.leftover_programs import warn_about_leftover_programs
 from ...steps.options import make_choices
 from ...steps.output_places import check_outputs, write_outputs
 
@@ -35,5 +35,5 @@ def height_file(args) -> None:
 
 def _write(args, made, stroke_count: int | None = None) -> None:
     files = in_files(args.output, made.text)
-    warn_about_leftover_programs(args.output, files)
+    warn(args.output, report_leftover_programs(args.output, files))
     write_outputs(args, files, stroke_count, made.time_s)

@@ -6,13 +6,12 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
-from ...errors import Notice
-from ...machine.writer import called_programs
-from ..console import warn
+from ..errors import Notice
+from .writer import called_programs
 
 
-def warn_about_leftover_programs(output: str, files: Collection[str]) -> None:
-    """Warn about programs that an earlier run left at the output path, before it is written.
+def report_leftover_programs(output: str, files: Collection[str]) -> list[Notice]:
+    """Report programs that an earlier run left at the output path, before it is written.
 
     These are programs for a colour, or parts of a program, that this run does not write. Nobody should run them.
 
@@ -24,9 +23,10 @@ def warn_about_leftover_programs(output: str, files: Collection[str]) -> None:
     existing += [each for each in _list_called_before(output) if path.with_name(each).exists()]
     written = set(map(Path, files))  # a path may be spelled ./out.ngc
     leftover = sorted({each for each in existing if path.with_name(each) not in written}, key=_make_sort_key)
-    if leftover:
-        sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
-        warn(output, [Notice("", sentence, code="programs-of-before", advice="delete them")])
+    if not leftover:
+        return []
+    sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
+    return [Notice("", sentence, code="programs-of-before", advice="delete them")]
 
 
 def _list_called_before(output: str) -> list[str]:
