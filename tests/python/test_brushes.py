@@ -366,12 +366,14 @@ def test_a_shipped_brush_has_no_unknown_key(name):
     assert not unknown_keys(find_brush(name))
 
 
-def test_mistyped_keys_are_reported_but_not_notes(tmp_path):
+def test_mistyped_keys_are_reported_but_not_notes(tmp_path, capsys):
     done = brushsvg.convert(ROOT / "examples" / "robot.svg", brush=mistyped(tmp_path))
     reported = [one for one in done.notices if one.code == "key-unknown"]
     assert {one.where for one in reported} == {"brush round-6"} and len(reported) == 3
     again = brushsvg.convert(done.plan, brush=mistyped(tmp_path))
     assert sum(one.code == "key-unknown" for one in again.notices) == 3
+    status, _, by_chart = in_json(capsys, "chart", "-o", tmp_path / "chart.ngc", "--brush", mistyped(tmp_path))
+    assert status == 0 and sum(notice.code == "key-unknown" for _, notice in by_chart) == 3
 
 
 @pytest.mark.parametrize("extra", ["", "[", "[]", "[" * 100_000, '{"footprints": 3}'])

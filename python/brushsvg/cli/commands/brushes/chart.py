@@ -14,6 +14,7 @@ from ....machine.job_program import Job
 from ....machine.leftover_programs import report_leftover_programs
 from ....machine.paint_reload import split_into_loads
 from ....model.library import find_brush
+from ....model.unknown_keys import mistyped_keys
 from ....notice_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
@@ -74,7 +75,7 @@ def chart_file(args) -> None:
     if args.chart:
         files[args.chart] = write_chart(laid_out).encode()
     notices = writer.report_program(suffix, loads, brush, cell, name)
-    warn(args.output, _adapt_to_paint_chart(notices) if args.paint else notices)
+    warn(args.output, [*mistyped_keys(brush), *(_adapt_to_paint_chart(notices) if args.paint else notices)])
     warn_about_cell(args, cell)
     warn(args.output, report_leftover_programs(args.output, files))
     write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell))
