@@ -19,7 +19,7 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.model.library import find_brush
 
 from .checked import CRASHED, converted, put
-from .random_jobs import REQUESTED, judged, said_of
+from .random_jobs import REQUESTED, judged, said_of, without
 from .random_works import SHEET, follows_ends, random_brush, random_cell, random_flags, random_svg
 from .works import CELLS, PENS
 
@@ -217,8 +217,7 @@ def _judged(number, dialect, cell, source, flags, folder, check) -> tuple[str, l
     wrong += too_deep(found.job.plan, brush)
     if number % STEPPED == 0:
         toml, program = folder / "mine.toml", folder / f"program{CELLS[dialect][1]}"
-        without = [word for word in flags if word not in said_of(flags, "--z-offset")]
-        wrong += stepped(source, found.job.plan, brush, toml, without)
+        wrong += stepped(source, found.job.plan, brush, toml, without(flags, "--z-offset"))
         again = folder / "again" / program.name  # in some languages, a program has the name of its file
         again.parent.mkdir(exist_ok=True)
         again.unlink(missing_ok=True)

@@ -93,7 +93,7 @@ def judged(
     if refusals := converted(source, program, "--cell", toml, *flags):
         wrong = (f"refused, and written: {refusals}",) if program.exists() else ()
         return Judged(tuple(refusals), wrong)
-    planned = [word for word in flags if word not in said_of(flags, "--z-offset")]
+    planned = without(flags, "--z-offset")
     text = _whole(program)
     # convert writes the plan's file without the limits of the machine. The program has passed these limits.
     if refusals := converted(source, plan, "--cell", toml, *planned):
@@ -188,3 +188,9 @@ def said_of(flags: tuple[str, ...], name: str) -> tuple[str, ...]:
     """Return a flag and its value, or nothing if it was not given."""
     at = flags.index(name) if name in flags else len(flags)
     return flags[at : at + 2]
+
+
+def without(flags: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """Return all flags but one and its value."""
+    at = flags.index(name) if name in flags else len(flags)
+    return flags[:at] + flags[at + 2 :]
