@@ -183,7 +183,7 @@ def one(number: int, folder: Path, shelf: Path, check: Callable, dialects: Seque
         flags = () if kind == "plan" else random_flags(random, dialect)
         flags = (*flags, *more_flags(random, kind, follows_ends(flags)), "--brush", brush)
         refused, wrong = _judged(number, dialect, cell, source, flags, folder, check)
-    except Exception as mistake:
+    except (Exception, SystemExit) as mistake:
         return _ended(tried, "", [f"{CRASHED}: {type(mistake).__name__} {mistake}"])
     return _ended(tried, refused, wrong)
 
