@@ -142,14 +142,14 @@ def _whole(program: Path) -> str:
 
 
 def has_steep_ways(job: Job) -> bool:
-    """Return whether a move of the plan is steeper than 2 : 1.
+    """Return whether a move of the plan is steeper than 3 : 2.
 
     A servo changes its height in steps along a move. It presses the brush before a steep move, or lifts it
-    after.
+    after, where the motors' shortest parts of the move would each change the height by more than two steps.
     """
     ways = np.vstack([np.abs(np.diff(each["poses_mm"], axis=0))[:, :3] for each in job.plan["passes"]])
     flat_mm = np.hypot(ways[:, 0], ways[:, 1])
-    return bool(((flat_mm > 1e-6) & (ways[:, 2] > 2 * flat_mm)).any())
+    return bool(((flat_mm > 1e-6) & (ways[:, 2] > 1.5 * flat_mm)).any())
 
 
 def without_backlash(cell):
