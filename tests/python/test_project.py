@@ -320,6 +320,13 @@ def test_explain_works_without_a_project_file(desk, capsys):
     assert gives(lines["brush"], "default") and not gives(lines["brush"], "rigid")
 
 
+@pytest.mark.parametrize("command", ["setup first-run linuxcnc-3axis -o o.ngc", "setup height -o o.ngc"])
+def test_explain_shows_the_default_sheet_of_programs_that_set_up_a_machine(desk, capsys, command):
+    assert gives(explained(capsys, *command.split())["sheet"], "200x100", "default")
+    project('paper = "a4"')
+    assert gives(explained(capsys, *command.split())["sheet"], "210x297", NAME)
+
+
 def test_a_typed_option_resets_related_project_options(desk, capsys):
     project('[defaults]\nfit = "60x40"\nstart = "pointed"\ncompensation = "constant"\nlag = 3')
     lines = explained(capsys, *"convert d.svg -o o.ngc --scale 0.9 --terminals butt --compensation closed".split())

@@ -159,6 +159,7 @@ def _describe_source(args, project: Project, typed, name: str, value, from_proje
 
 def _format_default(args, name: str, value) -> str:
     from ...jobs.options import DEFAULT_BRUSH, DEFAULTS
+    from ...jobs.setting_up import DEFAULT_SHEET_MM
     from ...machine.cells.cell_file import DEFAULT_CELL
 
     if value is not None:
@@ -167,6 +168,8 @@ def _format_default(args, name: str, value) -> str:
         return "the program's"
     if name == "brush" and _find_start_path(args).lower().endswith(".json"):
         return "the plan's"
+    if name == "sheet" and getattr(args, args.project_near or "", None) is None:
+        return _format_value(DEFAULT_SHEET_MM)
     defaults = {"brush": DEFAULT_BRUSH, "cell": DEFAULT_CELL, "terminals": "auto", "paint_speed": None}
     return _format_value(defaults.get(name, getattr(DEFAULTS, name, getattr(DEFAULTS, f"{name}_mm", None))))
 
