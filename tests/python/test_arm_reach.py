@@ -223,6 +223,16 @@ def test_place_reports_workable_paper_positions_and_draws_the_table(tmp_path, ca
     assert status == 1 and is_reported(reported, "arm-missing")
 
 
+def test_place_paper_changes_only_the_paper_of_the_cell():
+    """The returned cell once cut corners less than the given one, as the program of a drawing does."""
+    shipped = find_cell("ur5e")
+    cell = replace(shipped, blending=replace(shipped.blending, tolerance_mm=0.5))
+    assert brushsvg.place_paper(cell).cell == cell
+    far = replace(cell, paper=replace(cell.paper, origin_mm=(-150.0, -1100.0, 20.0)))
+    moved = brushsvg.place_paper(far).cell
+    assert moved.paper != far.paper and replace(moved, paper=far.paper) == far
+
+
 def elbow_mm(name, joints_rad):
     """Return the position (3,) of joint 3 in the robot's frame, by its description."""
     here = np.eye(4)

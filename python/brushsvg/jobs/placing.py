@@ -39,7 +39,8 @@ class PaperPlacement:
     """Where an arm reaches the paper.
 
     problems: what the arm cannot do, or which limits are broken, with the paper where it is; () if it reaches all.
-    cell: the cell with the paper at the nearest place where the arm reaches all; None if no such place was found.
+    cell: the cell as given, with the paper at the nearest place where the arm reaches all; None if no such place was
+        found.
     move_text: how the paper is moved or turned to get there; "" if it stays.
     start_deg: angles of the joints (6,) in which to begin there [deg], or turned by whole turns; None if no posture
         can run all of it.
@@ -94,7 +95,7 @@ def find_placement(
     from ..machine.arm import place
     from ..machine.arm.follow_joints import follow
 
-    cell = as_exact_as(load_cell(chosen.cell), DEFAULT_TOLERANCE_MM)
+    cell = load_cell(chosen.cell)
     with name_file_in_errors(path_of(chosen.cell)):
         if cell.arm is None:
             sentence = f"cell {cell.name} has no [arm] table: brushsvg does not know what its machine reaches"
@@ -135,11 +136,12 @@ def _program_to_place(chosen: Choices, cell: Cell, stage: Stage, warn: Warn) -> 
         flags = (flag for flag in (*LAYOUT_FLAGS, "wide") if flag != "sheet")
         warn(path_of(chosen.cell), report_flags_without_effect(chosen, flags, "the whole sheet"))
         sheet_mm = chosen.sheet or DEFAULT_SHEET_MM
-        return make_sheet_program(load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm), sheet_mm
+        brush = load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
+        return make_sheet_program(brush, as_exact_as(cell, DEFAULT_TOLERANCE_MM), sheet_mm), sheet_mm
     drawing = path_of(chosen.input)
     with name_file_in_errors(drawing):
         chosen = fill_from_drawing(chosen, chosen.input)
         warn(drawing, report_ineffective_flags(chosen))
         work = preparation.prepare(chosen.input, make_options(chosen, cell), stage)
-        loads = split_into_loads(work.plan, work.brush, cell)
-    return whole_program(loads, work.brush, cell), work.plan.sheet_mm
+        loads = split_into_loads(work.plan, work.brush, work.options.cell)
+    return whole_program(loads, work.brush, work.options.cell), work.plan.sheet_mm
