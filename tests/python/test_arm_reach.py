@@ -233,6 +233,19 @@ def test_place_paper_changes_only_the_paper_of_the_cell():
     assert moved.paper != far.paper and replace(moved, paper=far.paper) == far
 
 
+def test_place_suggests_no_joints_to_begin_with_if_no_place_was_found(capsys, tmp_path):
+    """The arm reaches the sheet, but the box excludes it. Joints were once suggested for the forbidden place."""
+    shipped = find_cell("ur5e")
+    box = ((5000.0, 5000.0, 5000.0), (5001.0, 5001.0, 5001.0))
+    cell = replace(shipped, workspace=replace(shipped.workspace, box_mm=box))
+    found = brushsvg.place_paper(cell)
+    assert {each.code for each in found.problems} == {"out-of-box"}
+    assert (found.cell, found.move_text, found.start_deg) == (None, "", None)
+    (tmp_path / "boxed.toml").write_text(write_cell(cell))
+    status, output, _ = in_json(capsys, "cell", "place", tmp_path / "boxed.toml")
+    assert (status, output) == (1, "")
+
+
 def elbow_mm(name, joints_rad):
     """Return the position (3,) of joint 3 in the robot's frame, by its description."""
     here = np.eye(4)

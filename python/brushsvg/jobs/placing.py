@@ -42,8 +42,7 @@ class PaperPlacement:
     cell: the cell as given, with the paper at the nearest place where the arm reaches all; None if no such place was
         found.
     move_text: how the paper is moved or turned to get there; "" if it stays.
-    start_deg: angles of the joints (6,) in which to begin there [deg], or turned by whole turns; None if no posture
-        can run all of it.
+    start_deg: angles of the joints (6,) in which to begin there [deg], or turned by whole turns; None without a place.
     picture: a map of the table or wall with the paper, the text of an SVG or the bytes of a PNG; None without a path.
     notices: warnings.
     """
@@ -120,12 +119,13 @@ def find_placement(
         table = place.rate_table(cell, program.robot_from_frame, joints)
         frames = program.robot_from_frame, found and found.frame
         picture = table_picture(suffix_of(path), table, cell, sheet_mm, *frames)
-    moved_cell = place.move_paper_of_cell(cell, found.frame) if found else None
+    if problems and not found:
+        return PaperPlacement(problems, None, "", None, picture)
     return PaperPlacement(
         problems,
-        moved_cell if problems else cell,
+        place.move_paper_of_cell(cell, found.frame) if found else cell,
         found.text if found else "",
-        None if followed.start_rad is None else tuple(map(math.degrees, followed.start_rad)),
+        tuple(map(math.degrees, followed.start_rad)),
         picture,
     )
 
