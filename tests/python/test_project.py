@@ -320,6 +320,16 @@ def test_explain_works_without_a_project_file(desk, capsys):
     assert gives(lines["brush"], "default") and not gives(lines["brush"], "rigid")
 
 
+@pytest.mark.parametrize(
+    ("line", "key"),
+    [('paper = "xx"', "paper"), ('paper = "0x5"', "paper"), ('[defaults]\nwidth = "x"', "defaults.width")],
+)
+def test_a_refused_value_is_reported_with_its_key_once(desk, capsys, line, key):
+    project(line)
+    assert main(["convert", "d.svg", "-o", "o.ngc"]) == 1
+    assert capsys.readouterr().err.count(f"{key}: ") == 1
+
+
 @pytest.mark.parametrize("command", ["setup first-run linuxcnc-3axis -o o.ngc", "setup height -o o.ngc"])
 def test_explain_shows_the_default_sheet_of_programs_that_set_up_a_machine(desk, capsys, command):
     assert gives(explained(capsys, *command.split())["sheet"], "200x100", "default")

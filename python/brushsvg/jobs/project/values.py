@@ -32,8 +32,9 @@ def read_value(choice: str, value: object, key: str) -> object:
             raise Error(sentence, code="choice-unknown")
         return _read_typed(choice, text, key)
     except Error as refusal:
-        sentence = refusal.sentence if key in refusal.sentence else f"{key}: {refusal.sentence}"
-        raise Error(sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice) from None
+        raise Error(
+            refusal.sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice
+        ) from None
 
 
 def _format_as_typed(value: object, key: str) -> str:
