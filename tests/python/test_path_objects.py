@@ -183,8 +183,9 @@ def test_an_ezdxf_document_is_read_like_its_file(tmp_path):
 
 def test_objects_that_are_neither_file_nor_document_are_refused():
     for wrong in (None, 3, io.BytesIO(b"x"), object()):
-        with refused("drawing-format ElementTree"):
+        with refused("drawing-format ElementTree path") as reported:
             brushsvg.read_drawing(wrong)
+        assert "open file" not in str(reported.value), "one is refused, too"
 
 
 @pytest.mark.parametrize(

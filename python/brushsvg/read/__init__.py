@@ -201,11 +201,9 @@ def _load_source(path) -> tuple:
         return reader, read_bytes(path)
     loaded = _load_open_document(path)
     if loaded is None:
-        raise Error(
-            f"a {type(path).__name__} is neither the path of a drawing, an open file, an ezdxf document nor an "
-            "ElementTree",
-            code="drawing-format",
-        )
+        sentence = f"{type(path).__name__} is not the type of a drawing"
+        advice = "give the path of a file, an ezdxf document or an ElementTree"
+        raise Error(sentence, code="drawing-format", advice=advice)
     return loaded
 
 
