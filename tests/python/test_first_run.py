@@ -155,4 +155,4 @@ def test_a_changed_first_run_is_refused(tmp_path, capsys):
 def test_a_sheet_that_is_too_small_is_refused(tmp_path, capsys):
     command = ("setup", "first-run", "linuxcnc-3axis", "-o", tmp_path / "first.ngc", "--sheet", "60x60")
     status, _, reported = in_json(capsys, *command)
-    assert status == 1 and is_reported(reported, "strokes-out-of-range")
+    assert status == 1 and is_reported(reported, "strokes-out-of-range 'larger sheet'")

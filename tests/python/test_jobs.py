@@ -54,11 +54,12 @@ def test_height_strokes_are_separate_and_on_the_sheet():
 @pytest.mark.parametrize(
     ("sheet", "heights", "expected"),
     [
-        ((30, 20), (1, -1, 0.1), "strokes-out-of-range 2 21"),
+        ((30, 20), (1, -1, 0.1), "strokes-out-of-range 2 21 'larger sheet'"),
         ((200, 100), (1, -12, 0.5), "height-out-of-range -12 '[-10, 1]'"),
         ((200, 100), (12, -1, 0.5), "height-out-of-range 12"),
-        ((200, 100), (1, -1, 0.01), "strokes-out-of-range 201 2 100"),
-        ((200, 100), (-1, 1, 0.1), "strokes-out-of-range 2 100"),
+        ((200, 100), (1, -1, 0.01), "strokes-out-of-range 201 2 100 'larger step'"),
+        ((200, 100), (1, 0.5, 0.6), "strokes-out-of-range 1 2 100 'smaller step'"),
+        ((200, 100), (-1, 1, 0.1), "strokes-out-of-range 0 2 100 'last height below'"),
     ],
 )
 def test_height_strokes_that_do_not_fit_are_refused(sheet, heights, expected):

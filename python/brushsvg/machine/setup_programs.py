@@ -69,7 +69,7 @@ def make_first_run_program(brush, cell: Cell, sheet_mm, highest_mm: float, lowes
     if start[0] < used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + LANE_SPACING_MM:
         room_mm = used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + 2 * LANE_SPACING_MM + LAST_STROKE_MM
         sentence = f"the sheet is {width:g} mm wide, less than the {room_mm:g} mm that a first run needs on it"
-        raise Error(sentence, code="strokes-out-of-range")
+        raise Error(sentence, code="strokes-out-of-range", advice="give a larger sheet")
     depth_mm = min(ONE_STROKE_DEPTH_MM, brush.depth_range_mm[1], -cell.heights.lowest_mm)
     ends = (start, (start[0] + LAST_STROKE_MM, start[1]))
 
@@ -279,13 +279,16 @@ def make_sheet_program(brush, cell: Cell, sheet_mm) -> Program:
 
 def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
     """Return the heights [mm] of the strokes, highest first. Raises Error for less than 2 or more than 100 strokes."""
-    count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
+    count = max(int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1, 0)
     if not 2 <= count <= 100:
         sentence = (
             f"from {highest_mm:g} to {lowest_mm:g} mm in steps of {step_mm:g} mm there are {count} strokes, "
             "not 2 to 100"
         )
-        raise Error(sentence, code="strokes-out-of-range")
+        advice = f"give a {'larger' if count > 100 else 'smaller'} step"
+        if lowest_mm >= highest_mm:
+            advice = "give a last height below the first one"
+        raise Error(sentence, code="strokes-out-of-range", advice=advice)
     return highest_mm - step_mm * np.arange(count)
 
 
@@ -298,7 +301,7 @@ def _stroke_starts(count: int, sheet_mm) -> list[tuple[float, float]]:
     if rows * columns < count:
         room = max(rows * columns, 0)
         sentence = f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}"
-        raise Error(sentence, code="strokes-out-of-range")
+        raise Error(sentence, code="strokes-out-of-range", advice="give a larger sheet")
     return [(LANE_SPACING_MM + pitch * (k // rows), height - LANE_SPACING_MM * (1 + k % rows)) for k in range(count)]
 
 
