@@ -3,7 +3,6 @@
 import random
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -163,13 +162,23 @@ def test_a_robot_stops_at_corners_that_are_sharp_after_rounding(turn_deg):
 
 
 def test_positions_are_rounded_in_the_frame_of_the_text():
-    a_pass = SimpleNamespace(poses_mm=[(1.23456, 2.0, 0.0), (1.2349, 2.0, -1.0)], arcs=[], tool_axes=())
+    a_pass = _core.Pass("s", [(1.23456, 2.0, 0.0), (1.2349, 2.0, -1.0)], 20.0)
     upright = as_written(a_pass, cell_of("linuxcnc-3axis", 3), np.eye(4))
     assert upright.poses_mm[:, 0].tolist() == [1.235, 1.235]
     cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (2.0, 1.0, 30.0)))
     leaning = as_written(a_pass, cell, robot_from_paper(cell))
     assert leaning.poses_mm == pytest.approx(np.array(a_pass.poses_mm), abs=1e-3)
     assert leaning.sideways_mm > upright.sideways_mm
+
+
+def test_a_nearly_straight_lift_is_straight_on_leaning_paper():
+    """There, a step of two units sideways counts as straight, and rounding decides what a reader sees."""
+    a_pass = _core.Pass("s", [(0.0, 0.0, 0.0), (10.0, 0.0, -3.0), (20.0, 0.0, -0.5), (20.0025, 0.0, 0.0)], 20.0)
+    cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (2.0, 1.0, 30.0)))
+    leaning = as_written(a_pass, cell, robot_from_paper(cell))
+    assert leaning.commanded_mm[-2:, :2].tolist() == [[20.0, 0.0], [20.0, 0.0]]
+    level = as_written(a_pass, cell_of("linuxcnc-3axis", 3), np.eye(4))
+    assert level.commanded_mm[-1].tolist() == [20.0025, 0.0, 0.0]
 
 
 # A path that is 40 times as steep as long, like the end of a dab with a long lag. Each of its parts is two

@@ -20,7 +20,7 @@ from ..moves import via_point
 from ..posts import POSTS, circles_by
 from ..tool_axes import axes_of
 from .arc_chords import OFF_MM, add_chords, with_chords
-from .corner_blending import MAX_VERTICAL_SIDEWAYS_MM
+from .corner_blending import MAX_VERTICAL_SIDEWAYS_MM, find_vertical_steps
 from .distortion import commanded_pass, has_lean
 from .pass_on_path import move_pass_to_path
 
@@ -55,10 +55,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     was_read: whether the pass was read from a program.
     """
-    a_pass = commanded_pass(lift_on_steep_paths(a_pass, cell, was_read) if cell.servo else a_pass, cell)
     post = POSTS.get(cell.language)
     unit = unit_mm(cell)
-    exact = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     circle_definition = circles_by(cell)
     in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
     # a leaning tool is commanded sideways so that it goes straight down, except for rounding
@@ -66,6 +64,12 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     if in_robot and not is_upright(frame):
         sideways_mm = 2 * unit  # vertical moves are only vertical up to rounding
         circle_definition = ""  # circles are not in a plane that the robot knows
+    if cell.servo:
+        a_pass = lift_on_steep_paths(a_pass, cell, was_read)
+    if sideways_mm > MAX_VERTICAL_SIDEWAYS_MM and not was_read:
+        a_pass = _straighten_lifts(a_pass, sideways_mm + 2**0.5 * unit)
+    a_pass = commanded_pass(a_pass, cell)
+    exact = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
 
     def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
@@ -130,6 +134,24 @@ def lift_on_steep_paths(a_pass, cell: Cell, was_read: bool = False):
         return a_pass
     poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float)
     return move_pass_to_path(a_pass, _insert_lifts(poses, find_steep_rows(poses)), [])
+
+
+def _straighten_lifts(a_pass, sideways_mm: float):
+    """Return a pass whose steps that are nearly straight up or down are exactly so.
+
+    Rounding would turn such a step into a straight one in one program and not in another.
+
+    sideways_mm: a step that is shorter than this sideways becomes straight.
+    """
+    poses = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    is_vertical = find_vertical_steps(np.diff(poses, axis=0), sideways_mm)
+    arc_starts = {arc.first for arc in a_pass.arcs}
+    rows = [row for row in np.flatnonzero(is_vertical).tolist() if row + 1 not in arc_starts]
+    if not rows:
+        return a_pass
+    for row in rows:
+        poses[row + 1, :2] = poses[row, :2]
+    return move_pass_to_path(a_pass, poses, a_pass.arcs, axes_of(a_pass))
 
 
 def _insert_lifts(poses: np.ndarray, rows: np.ndarray) -> np.ndarray:
