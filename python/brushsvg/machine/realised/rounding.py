@@ -144,9 +144,10 @@ def _straighten_lifts(a_pass, sideways_mm: float):
     sideways_mm: a step that is shorter than this sideways becomes straight.
     """
     poses = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
-    is_vertical = find_vertical_steps(np.diff(poses, axis=0), sideways_mm)
+    steps = np.diff(poses, axis=0)
+    is_nearly_vertical = find_vertical_steps(steps, sideways_mm) & steps[:, :2].any(axis=1)
     arc_starts = {arc.first for arc in a_pass.arcs}
-    rows = [row for row in np.flatnonzero(is_vertical).tolist() if row + 1 not in arc_starts]
+    rows = [row for row in np.flatnonzero(is_nearly_vertical).tolist() if row + 1 not in arc_starts]
     if not rows:
         return a_pass
     for row in rows:
