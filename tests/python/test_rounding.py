@@ -177,6 +177,11 @@ def test_a_nearly_straight_lift_is_straight_on_leaning_paper():
     cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (2.0, 1.0, 30.0)))
     leaning = as_written(a_pass, cell, robot_from_paper(cell))
     assert leaning.commanded_mm[-2:, :2].tolist() == [[20.0, 0.0], [20.0, 0.0]]
+    many = np.linspace((20.0, 0.0, -3.0), (21.0, 0.0, 0.0), 501)  # a steep slope in steps of two units sideways
+    slope = _core.Pass("s", [(0.0, 0.0, 0.0), (10.0, 0.0, -3.0), *many.tolist()], 20.0)
+    written = as_written(slope, cell, robot_from_paper(cell))
+    height = written.commanded_mm[2:, 2]
+    assert written.commanded_mm[2:, 0] == pytest.approx(20.0 + (height + 3.0) / 3.0, abs=0.004)
     level = as_written(a_pass, cell_of("linuxcnc-3axis", 3), np.eye(4))
     assert level.commanded_mm[-1].tolist() == [20.0025, 0.0, 0.0]
 

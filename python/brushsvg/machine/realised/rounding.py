@@ -151,7 +151,8 @@ def _straighten_lifts(a_pass, sideways_mm: float):
     if not rows:
         return a_pass
     for row in rows:
-        poses[row + 1, :2] = poses[row, :2]
+        if np.abs(poses[row + 1, :2] - poses[row, :2]).max() < sideways_mm:  # many short steps do not add up
+            poses[row + 1, :2] = poses[row, :2]
     return move_pass_to_path(a_pass, poses, a_pass.arcs, axes_of(a_pass))
 
 
