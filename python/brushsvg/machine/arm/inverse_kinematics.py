@@ -32,7 +32,7 @@ class JointSolver:
 
     solutions: maps a flange pose (4, 4) [mm, robot's frame] to all joint angles (k, 6) [rad, each in (-pi, pi]] that
         put the flange there. k is 0 if there are none. Joint limits are not checked. With at_singularities=False, a
-        pose exactly at a singularity may have none, and a pose out of reach is answered 30 times sooner.
+        pose exactly at a singularity may have none, and a pose out of reach is answered much sooner.
     """
 
     arm: Arm
