@@ -126,6 +126,38 @@ TEST_CASE("points without weight have no effect") {
     CHECK(describe_open_unknowns(both) == describe_open_unknowns(alone));
 }
 
+/// Returns the matrix of an autocovariance around an outline of n points.
+Eigen::MatrixXd around_outline(const std::vector<double>& autocovariance, int n) {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+    for (int k = 0; k < n; ++k)
+        for (int lag = 0; lag < int(autocovariance.size()); ++lag) {
+            out(k, (k + lag) % n) += autocovariance[std::size_t(lag)];
+            if (lag) out((k + lag) % n, k) += autocovariance[std::size_t(lag)];
+        }
+    return out;
+}
+
+TEST_CASE("an autocovariance that is cut off gives no negative variance") {
+    const auto least_and_sum = [](const std::vector<double>& c, int n) {
+        const Eigen::MatrixXd around = around_outline(c, n);
+        return std::pair{Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(around).eigenvalues()[0], around.row(0).sum()};
+    };
+    const std::vector<double> cut{1.0, 0.9, 0.8, 0.7, 0.6, 0.5}, dips{1.0, 0.6, -0.3, 0.3, -0.4};
+    CHECK(least_and_sum(cut, 40).first < -0.5);
+    for (const auto& c : {cut, dips, std::vector<double>{2.0}})
+        for (const int n : {3, 7, 40, 121}) {
+            CAPTURE(n);
+            const auto [least, sum] = least_and_sum(as_moving_average(c), n);
+            CHECK(least > -1e-9);
+            CHECK(sum == doctest::Approx(least_and_sum(c, n).second));
+        }
+    std::vector<double> valid;
+    for (int lag = 0; lag < 40; ++lag) valid.push_back(std::pow(0.8, lag));
+    const std::vector<double> kept = as_moving_average(valid);
+    for (std::size_t lag = 0; lag < valid.size(); ++lag)
+        CHECK(kept[lag] == doctest::Approx(valid[lag]).epsilon(1e-3).scale(1.0));
+}
+
 TEST_CASE("specks alone are refused") {
     Poses poses(2, 3);
     poses << 0, 0, -1, 40, 0, -1;

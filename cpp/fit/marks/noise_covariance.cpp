@@ -165,6 +165,29 @@ struct OutlineCorrelation {
 
 }  // namespace
 
+std::vector<double> as_moving_average(const std::vector<double>& autocovariance) {
+    constexpr int kFrequencies = 1024;
+    const int lags = int(autocovariance.size());
+    std::vector<double> cosine(kFrequencies), weights(std::size_t(2 * lags - 1), 0.0), out(std::size_t(2 * lags - 1));
+    for (int k = 0; k < kFrequencies; ++k) cosine[std::size_t(k)] = std::cos(2.0 * M_PI * k / kFrequencies);
+    double whole = 0.0, sum = 0.0;
+    for (int lag = 0; lag < lags; ++lag) whole += (lag ? 2.0 : 1.0) * autocovariance[std::size_t(lag)];
+    for (int frequency = 0; frequency < kFrequencies; ++frequency) {
+        const auto at = [&](int lag) { return cosine[std::size_t(frequency * std::abs(lag) % kFrequencies)]; };
+        double power = 0.0;
+        for (int lag = 0; lag < lags; ++lag)
+            power += (lag ? 2.0 : 1.0) * autocovariance[std::size_t(lag)] * at(lag);
+        const double amplitude = std::sqrt(std::max(0.0, power)) / kFrequencies;
+        for (int lag = 1 - lags; lag < lags; ++lag) weights[std::size_t(lag + lags - 1)] += amplitude * at(lag);
+    }
+    for (std::size_t lag = 0; lag < out.size(); ++lag) {
+        for (std::size_t k = lag; k < weights.size(); ++k) out[lag] += weights[k] * weights[k - lag];
+        sum += (lag ? 2.0 : 1.0) * out[lag];
+    }
+    for (double& c : out) c *= whole / sum;
+    return out;
+}
+
 Weighing estimate_weighing(const MarkProblem& at) {
     Weighing out = at.weighing;
     std::vector<MarkDerivatives> marks = evaluate_marks(at);
@@ -237,6 +260,7 @@ Weighing estimate_weighing(const MarkProblem& at) {
             out.autocovariance = {least};
         whole = least;
     }
+    out.autocovariance = as_moving_average(out.autocovariance);
     out.points_per_independent = whole / out.slope;
     return out;
 }
@@ -281,10 +305,10 @@ MatrixXd covariance(const MarkProblem& at) {
             const Index begin = at.model.ring_begin(i, r), n = at.model.ring_begin(i, r + 1) - begin;
             for (Index k = 0; k < n; ++k) {
                 checkpoint(int(farthest));
-                for (Index lag = 0; lag < std::min(farthest, (n + 1) / 2); ++lag) {
+                for (Index lag = 0; lag < farthest; ++lag) {  // more than once around a short outline
                     const double c = weighing.autocovariance[std::size_t(lag)];
                     correlated_rows.row(begin + k) += c * by.row(begin + (k + lag) % n);
-                    if (lag) correlated_rows.row(begin + k) += c * by.row(begin + (k + n - lag) % n);
+                    if (lag) correlated_rows.row(begin + k) += c * by.row(begin + (k + n - lag % n) % n);
                 }
             }
         }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "mark_problem.hpp"
 
 namespace brushsvg::fit {
@@ -10,6 +12,13 @@ namespace brushsvg::fit {
 /// again. S is the sum of the autocovariance, and h(k) the mean of the k-th diagonal of the hat matrix, which maps
 /// noise to the change of the fit.
 Weighing estimate_weighing(const MarkProblem& at);
+
+/// Returns the autocovariance of a moving average of independent errors that is near the given one, with its sum.
+///
+/// An estimated autocovariance that is cut off has negative power at some frequencies, and gives negative variances.
+/// The transform of the average's weights is the square root of the power, where that is positive. The result has
+/// 2 n - 1 values for n given ones, whose sum with both neighbours must be positive.
+std::vector<double> as_moving_average(const std::vector<double>& autocovariance);
 
 /// The loss of the marks near the solution, over the shared unknowns and then both displacements of every mark.
 struct LossDerivatives {

@@ -50,7 +50,7 @@ def add_list_show_check(commands, kind: str, about: str, shown: str, file: str):
     Returns the subparsers, to which further commands can be added.
     """
     subcommands = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
-    subcommands.add_parser("list", help=f"list the shipped {kind}s").set_defaults(run=f"{kind}_list")
+    subcommands.add_parser("list", help=f"list the shipped {kind} files").set_defaults(run=f"{kind}_list")
     show = subcommands.add_parser("show", help=f"show {shown} of one {kind}")
     show.add_argument("input", metavar="NAME", help=f"a shipped {kind}, or a {file}")
     show.set_defaults(run=f"{kind}_show")
