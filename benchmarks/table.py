@@ -38,6 +38,7 @@ ROOT = Path(__file__).parents[1]
 SYSTEM_PYTHON = "/usr/bin/python3"  # this Python has lxml, like Inkscape's own
 PREVIEW = ROOT / "plugins" / "inkscape" / "brushsvg_preview.py"
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
+LINE = "The quick brown fox jumps over the lazy"
 REFINED = 60  # number of refined strokes of the page
 SLOWER = 1.1  # a row is called slower beyond this ratio
 STROKES_OF = """
@@ -127,9 +128,9 @@ def painted_chart(file: Path) -> int:
     return len(marks)
 
 
-def letters(file: Path) -> None:
-    font = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
-    document, _ = text_svg(LETTERS, font.read_bytes(), size_mm=50.0)
+def letters(file: Path, text: str, font_name: str, size_mm: float) -> None:
+    font = Path(matplotlib.get_data_path(), "fonts", "ttf", font_name)
+    document, _ = text_svg(text, font.read_bytes(), size_mm=size_mm)
     file.write_text(document, encoding="utf-8")
 
 
@@ -179,8 +180,9 @@ def rows(folder: Path, only: str = "") -> list[Row]:
     large.write_text("\n".join(lines), encoding="utf-8")
     part.write_text("\n".join([*lines[: 1 + REFINED], "</g></svg>"]), encoding="utf-8")
     program, page_svg, word_program = folder / "p.ngc", folder / "p.svg", folder / "word.ngc"
-    alphabet, chart = folder / "abc.svg", folder / "chart.json"
-    letters(alphabet)
+    alphabet, text, chart = folder / "abc.svg", folder / "text.svg", folder / "chart.json"
+    letters(alphabet, LETTERS, "DejaVuSans.ttf", 50.0)
+    letters(text, "\n".join([LINE] * 8), "DejaVuSerif-Bold.ttf", 10.0)
     fit = "fit of a chart's marks"
     marks = painted_chart(chart) if only in fit else 0
     subprocess.run([command(ROOT), "convert", word, "-o", word_program, "--quiet"], check=True)
@@ -210,6 +212,7 @@ def rows(folder: Path, only: str = "") -> list[Row]:
         Row(of_word + "check", "s", "0.6", brushsvg("check", word_program, word)),
         Row("first `read_drawing` in Python", "s", "0.3", code(read), numpy_starts, start),
         Row("outlines of letters, a glyph", "ms", "4", outlines(alphabet)),
+        Row(f"text of {8 * len(LINE)} letters, convert", "s", "5", to_program(text)),
         Row("advance, a move", "ns", "30", advance("closed form"), "floor: exp + sqrt + division", arithmetic),
     ]  # fmt: skip
     if shutil.which(SYSTEM_PYTHON) and not subprocess.run([SYSTEM_PYTHON, "-c", "import lxml"]).returncode:

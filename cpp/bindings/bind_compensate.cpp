@@ -5,6 +5,7 @@
 #include "bindings.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/error.hpp"
+#include "inverse/repeats.hpp"
 #ifdef BRUSHSVG_FIT
 #include "refine.hpp"
 #endif
@@ -150,8 +151,16 @@ passes: (whether the pass is from the other plan, its index there) for each pass
                     Warning{"widths-ignored", "", "brush " + brush.name + " has one width: drawn widths are ignored"});
             std::vector<CompensatedPass> done(strokes.size());
             const std::size_t at_once = method == "refined" ? 8 : 32;  // Ctrl-C and progress wait for this many strokes
-            run_in_parallel_chunks(strokes.size(), at_once, progress,
-                                   [&](std::size_t i) { done[i] = compensate_one(strokes[i]); });
+            // Refined passes depend on the place: no paint may leave the sheet.
+            std::vector<Original> originals;
+            if (method != "refined") originals = find_originals(strokes);
+            const auto is_original = [&](std::size_t i) { return originals.empty() || originals[i].index == i; };
+            run_in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) {
+                if (is_original(i)) done[i] = compensate_one(strokes[i]);
+            });
+            for (std::size_t i = 0; i < strokes.size(); ++i)
+                if (!is_original(i))
+                    done[i] = move_to(strokes[i], done[originals[i].index], originals[i].displacement_mm);
             for (CompensatedPass& one : done) {
                 out.plan.passes.push_back(std::move(one.pass));
                 out.tracking_errors.push_back(one.tracking_error);

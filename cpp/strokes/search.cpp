@@ -14,6 +14,7 @@
 #include "brushsvg/stroke_search.hpp"
 #include "inverse/closed_form.hpp"
 #include "inverse/ends/end_styles.hpp"
+#include "inverse/repeats.hpp"
 #include "marks/coverage_contours.hpp"
 #include "strokes/canvas.hpp"
 #include "strokes/cut_at_bends.hpp"
@@ -523,14 +524,74 @@ class Search {
     mutable Pixels pixels_;                       ///< pixels of the bare area that is being painted
 };
 
+bool are_alike(const Pass& a, const Pass& b) {
+    return a.poses_mm.rows() == b.poses_mm.rows() && a.poses_mm.col(2).isApprox(b.poses_mm.col(2)) &&
+           a.tool_axes == b.tool_axes;
+}
+
+bool are_alike(const PaintedShape& a, const PaintedShape& b) {
+    if (!brushsvg::are_alike(a.target_mm, b.target_mm) || a.strokes.size() != b.strokes.size() ||
+        a.passes.size() != b.passes.size())
+        return false;
+    for (std::size_t k = 0; k < a.strokes.size(); ++k)
+        if (!brushsvg::are_alike(a.strokes[k], b.strokes[k])) return false;
+    for (std::size_t k = 0; k < a.passes.size(); ++k)
+        if (!are_alike(a.passes[k], b.passes[k])) return false;
+    return true;
+}
+
+/// Find the original of each shape: its outline, strokes and passes are equal but for their place.
+std::vector<Original> find_originals(const std::vector<PaintedShape>& shapes) {
+    std::vector<Points> points_mm;
+    for (const PaintedShape& shape : shapes) {
+        Rings lists = shape.target_mm;
+        for (const Stroke& stroke : shape.strokes) lists.push_back(points_of(stroke));
+        for (const Pass& pass : shape.passes) lists.push_back(pass.poses_mm.leftCols<2>());
+        points_mm.push_back(joined(lists));
+    }
+    return brushsvg::find_originals(points_mm,
+                                    [&](std::size_t k, std::size_t j) { return are_alike(shapes[k], shapes[j]); });
+}
+
+/// Move the result for the original of a shape to the shape.
+SearchedShape moved_to(const PaintedShape& shape, SearchedShape found, const Vector2d& displacement_mm) {
+    const auto move_stroke = [&](Stroke& stroke) {
+        move(stroke.middle_mm, displacement_mm);
+        move(stroke.target_mm, displacement_mm);
+    };
+    for (std::size_t k = 0; k < found.strokes.size(); ++k) {
+        if (!found.changed[k]) {
+            found.strokes[k] = {shape.strokes[k]};
+            continue;
+        }
+        for (Stroke& stroke : found.strokes[k]) {
+            move_stroke(stroke);
+            stroke.id = shape.strokes[k].id;
+            stroke.layer = shape.strokes[k].layer;
+            stroke.colour = shape.strokes[k].colour;
+        }
+    }
+    for (AddedStroke& added : found.added) {
+        move_stroke(added.stroke);
+        move(added.area_mm, displacement_mm);
+        move(added.mark_mm, displacement_mm);
+    }
+    return found;
+}
+
 }  // namespace
 
 std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                           const ObjectiveWeights& weights, bool are_free) {
     check(weights);
+    const std::vector<Original> originals = find_originals(shapes);
     std::vector<SearchedShape> found(shapes.size());
-    parallel_for(0, shapes.size(),
-                 [&](std::size_t k) { found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free); });
+    parallel_for(0, shapes.size(), [&](std::size_t k) {
+        if (originals[k].index == k) found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free);
+    });
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+        if (originals[k].index != k)
+            found[k] = moved_to(shapes[k], found[originals[k].index], originals[k].displacement_mm);
     return found;
 }
 

@@ -113,6 +113,41 @@ TEST_CASE("shapes searched together and alone have the same result") {
     }
 }
 
+TEST_CASE("a repeated shape gets the strokes of the first one at its own place, with its own names") {
+    const Brush brush = shipped("round-6");
+    Rings shape = unite({box(10, 10, 17, 50), box(17, 26, 34, 33)});
+    Stroke stem = straight({13.5, 50}, {13.5, 4}, 3.5);
+    stem.target_mm = shape;
+    stem.id = StrokeId("a", 1);
+    PaintedShape first{shape, {stem}, {pass_of(stem, brush)}}, again = first, other;
+    const Eigen::RowVector2d by(-123.4, 56.7);
+    for (Ring* ring : {&again.target_mm[0], &again.strokes[0].target_mm[0]}) ring->rowwise() += by;
+    for (int column : {0, 2, 4, 6}) again.strokes[0].middle_mm.middleCols<2>(column).rowwise() += by;
+    again.passes[0].poses_mm.leftCols<2>().rowwise() += by;
+    again.strokes[0].id = StrokeId("b", 7);
+    again.strokes[0].colour = "#ff0000";
+    other = again;
+    other.strokes[0].half_width = {{0.0, 2.5}};
+    other.passes[0] = pass_of(other.strokes[0], brush);
+    const auto found = search_strokes({first, again, other}, brush);
+    const auto strokes = all_of(found[0]), repeated = all_of(found[1]), alone = all_of(found[2]);
+    REQUIRE(found[0].changed[0]);
+    REQUIRE(!found[0].added.empty());
+    REQUIRE(repeated.size() == strokes.size());
+    for (std::size_t k = 0; k < strokes.size(); ++k) {
+        Cubics expected = strokes[k].middle_mm;
+        for (int column : {0, 2, 4, 6}) expected.middleCols<2>(column).rowwise() += by;
+        CHECK((repeated[k].middle_mm - expected).cwiseAbs().maxCoeff() < 1e-9);
+    }
+    CHECK(repeated[0].id.name() == again.strokes[0].id.name());
+    CHECK(repeated[0].colour == "#ff0000");
+    const auto expected = search_strokes({other}, brush);
+    CHECK(alone.size() == all_of(expected[0]).size());
+    CHECK(alone[0].middle_mm == all_of(expected[0])[0].middle_mm);
+    const Ring &area = found[0].added[0].area_mm[0], &moved_area = found[1].added[0].area_mm[0];
+    CHECK((moved_area.row(0) - area.row(0) - by).norm() < 1e-9);
+}
+
 TEST_CASE("unpainted areas above a share of the shape are found, the largest first") {
     const Brush brush = shipped("round-6");
     const Rings shape = unite({box(10, 10, 17, 50), box(17, 26, 34, 33), box(17, 40, 22, 44)});

@@ -12,7 +12,8 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
-from brushsvg.strokes.skeleton import filled_rings
+from brushsvg.strokes import skeleton
+from brushsvg.strokes.skeleton import filled_rings, outline_strokes
 from brushsvg.strokes.swept_areas import region
 
 FLAG = "M10 5H25V50H17V10H10Z"
@@ -179,3 +180,66 @@ def test_the_sides_of_a_wide_shape_are_painted_with_any_end_style(tmp_path, plai
     """
     shape, mark, _ = painted(tmp_path, "M5 20H55V32H5Z", **plain)
     assert shape.intersection(mark).area / shape.union(mark).area > 0.93
+
+
+def letters(tmp_path, places, d=CORNERS["an R with a waist"], more=""):
+    """Return the preparation of a text that repeats a letter at places [mm], rounded as drawing programs do."""
+    paths = "".join(
+        f'<path id="l{k}" fill="#00000{k}" transform="translate({x:.3f} {y:.3f}) scale(0.4)" d="{d}"/>'
+        for k, (x, y) in enumerate(places)
+    )
+    file = tmp_path / "text.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="100mm" viewBox="0 0 200 100">'
+        f"{paths}{more}</svg>"
+    )
+    return prepare(file, Options(brush=find_brush("round-6")))
+
+
+def test_a_letter_that_repeats_is_painted_alike_everywhere(tmp_path, monkeypatch):
+    places = [(7.1, 3.3), (31.4157, 3.3), (60.0003, 41.77), (150.9, 60.2)]
+    alone = [letters(tmp_path, [place]) for place in places]
+    calls = []
+    monkeypatch.setattr(skeleton, "outline_strokes", lambda *given: calls.append(given) or outline_strokes(*given))
+    # The last one is slightly larger, so it has strokes of its own.
+    larger = f'<path id="larger" transform="translate(100 3) scale(0.4003)" d="{CORNERS["an R with a waist"]}"/>'
+    work = letters(tmp_path, places, more=larger)
+    assert len(calls) == 2
+    passes = {k: [each for each in work.plan.passes if str(each.stroke).startswith(f"l{k}")] for k in range(4)}
+    for k, (place, by_itself) in enumerate(zip(places, alone, strict=True)):
+        by_mm = np.subtract(place, places[0]) * (1, -1)
+        assert len(passes[k]) == len(passes[0]) == len(by_itself.plan.passes)
+        for own, first in zip(passes[k], passes[0], strict=True):
+            assert own.poses_mm == pytest.approx(first.poses_mm + np.append(by_mm, 0), abs=2e-3)
+            assert own.colour == f"#00000{k}"
+            assert str(own.stroke) == str(first.stroke).replace("l0", f"l{k}")
+
+
+def test_equal_strokes_are_compensated_once_and_keep_their_names_and_places():
+    brush = find_brush("round-6")
+    first = _core.Stroke.from_points([(20, 20), (50, 20), (50, 45)], 4.0, "first")
+    by_mm = np.array([33.3, -7.7])
+    again = _core.Stroke.from_points(np.array([(20, 20), (50, 20), (50, 45)]) + by_mm, 4.0, "again")
+    again = again.replaced(colour="#ff0000", layer="top", settings=_core.Settings(order=3))
+    wider = _core.Stroke.from_points([(20, 20), (50, 20), (50, 45)], 6.0, "wider")
+    done = _core.compensate([first, again, wider], brush, None)
+    (one, two, three), (error, moved_error, _) = done.plan.passes, done.tracking_errors
+    assert two.poses_mm == pytest.approx(one.poses_mm + np.append(by_mm, 0), abs=1e-9)
+    assert moved_error.at_mm == pytest.approx(error.at_mm + by_mm, abs=1e-9)
+    assert moved_error.largest_mm == error.largest_mm
+    assert (str(two.stroke), two.colour, two.layer, two.settings.order) == ("again", "#ff0000", "top", 3)
+    assert three.poses_mm[:, 2].min() < one.poses_mm[:, 2].min() - 0.5
+    assert two.poses_mm == pytest.approx(_core.compensate([again], brush, None).plan.passes[0].poses_mm, abs=1e-6)
+
+
+def test_a_refined_stroke_near_the_edge_of_the_sheet_differs_from_one_in_the_middle():
+    brush = find_brush("round-6")
+    points = np.array([(3.2, 5.0), (3.2, 30.0)])
+    strokes = [
+        _core.Stroke.from_points(points + np.array([x, 0]), 5.5, name) for x, name in ((0, "edge"), (50, "middle"))
+    ]
+    both = _core.compensate(strokes, brush, (100, 60), "refined").plan.passes
+    for stroke, a_pass in zip(strokes, both, strict=True):
+        assert np.array_equal(
+            _core.compensate([stroke], brush, (100, 60), "refined").plan.passes[0].poses_mm, a_pass.poses_mm
+        )

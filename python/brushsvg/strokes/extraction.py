@@ -6,6 +6,7 @@ Lines are painted as they are drawn, filled shapes as a brush would paint them.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 # Least share of the area of a line's stroke that its fill must add. With less, the path is a line; with more, a
 # shape.
 _MIN_FILL_SHARE = 0.01
+# Largest difference of equal shapes. Drawings and programs round coordinates to 1e-3 mm.
+_EQUAL_MM = 2e-3
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,10 @@ class _Line:
     closed: bool
     target_mm: list
     covered: tuple[bool, bool] = (False, False)
+
+    def moved(self, by_mm: np.ndarray) -> _Line:
+        cubics = self.cubics + np.tile(by_mm, 4)
+        return replace(self, cubics=cubics, target_mm=[ring + by_mm for ring in self.target_mm])
 
 
 def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -> tuple[list[Stroke], list[Notice]]:
@@ -62,10 +69,10 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
     require_type(design, Design, "a drawing, as read_drawing returns it")
     need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
     need_one_of(script, SCRIPTS, "script")
-    painted_elements, empty, notices = [], [], []
+    painted_elements, empty, notices, known_shapes = [], [], [], _KnownShapes()
     for element in (part for each in design.elements for part in _split_by_colour(each, paths_as)):
         try:
-            lines = _find_lines(element, paths_as, script)
+            lines = _find_lines(element, paths_as, script, known_shapes)
         except Error as beyond:
             notices.append(Notice(element.id or "filled", f"{beyond}: left out", code=beyond.code))
             continue
@@ -141,27 +148,44 @@ def _split_by_colour(element: Element, paths_as: str | None) -> tuple[Element, .
     return (replace(line, id=element.id, is_under_fill=False),) if is_line else (shape, line)
 
 
-def _find_lines(element: Element, paths_as: str | None, script: str) -> list[_Line]:
+class _KnownShapes:
+    """Filled shapes whose lines are known. A text repeats its letters, and each one is found once."""
+
+    def __init__(self):
+        self._lines_of: dict[tuple, list[tuple[list[np.ndarray], list[_Line]]]] = defaultdict(list)
+
+    def find_lines(self, rings: list[np.ndarray], script: str) -> list[_Line]:
+        """Return the lines of a shape, moved from an equal shape if there is one."""
+        from .skeleton import outline_strokes
+
+        if not rings:
+            return []
+        size_mm = np.ptp(rings[0], axis=0).round(1)  # few shapes of one size are compared with each other
+        known = self._lines_of[script, *size_mm, *map(len, rings)]
+        for original, lines in known:
+            by_mm = (rings[0] - original[0]).mean(axis=0)
+            if all(np.abs(ring - each - by_mm).max() < _EQUAL_MM for ring, each in zip(rings, original, strict=True)):
+                return [line.moved(by_mm) for line in lines]
+        lines = [
+            _Line(each.middle_mm, each.half_width, each.closed, each.target_mm, each.covered)
+            for each in outline_strokes(rings, script)
+        ]
+        known.append((rings, lines))
+        return lines
+
+
+def _find_lines(element: Element, paths_as: str | None, script: str, known_shapes: _KnownShapes) -> list[_Line]:
     """Return the lines of an element; none if it leaves no mark."""
+    from .skeleton import filled_rings
+
     if paths_as == "stroke" and not element.is_stroked:
         return []
     if paths_as == "stroke" or (paths_as is None and not element.fill_rule):
         return [_make_line(element, subpath) for subpath in element.subpaths]
-    lines = _find_shape_lines(element, paths_as is None, element.settings.get("script", script))
-    return [_make_line(element, subpath) for subpath in element.subpaths] if lines is None else lines
-
-
-def _find_shape_lines(element: Element, grown: bool, script: str) -> list[_Line] | None:
-    """Return the lines of a filled shape, or None where only its stroke shows."""
-    from .skeleton import filled_rings, outline_strokes
-
-    rings = _grow_by_stroke(element) if grown and element.is_stroked else filled_rings(element)
-    if rings is None:
-        return None
-    return [
-        _Line(each.middle_mm, each.half_width, each.closed, each.target_mm, each.covered)
-        for each in outline_strokes(rings, script)
-    ]
+    rings = _grow_by_stroke(element) if paths_as is None and element.is_stroked else filled_rings(element)
+    if rings is None:  # only its stroke shows
+        return [_make_line(element, subpath) for subpath in element.subpaths]
+    return known_shapes.find_lines(rings, element.settings.get("script", script))
 
 
 def _grow_by_stroke(element: Element) -> list | None:
