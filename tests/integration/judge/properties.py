@@ -86,11 +86,18 @@ def outlines(random, at: Path) -> Path:
             thin = random.uniform(0.01, 0.6)
             data = f'd="M{a[0]:.3f} {a[1]:.3f}L{b[0]:.3f} {b[1]:.3f}L{b[0]:.3f} {b[1] + thin:.3f}Z"'
         body.append(f'<path fill="{random.choice(("#000", "#c00"))}" {data}/>')
+        if random.random() < 0.3:  # as a text repeats its letters
+            x, y = random.uniform(-9, 9, 2)
+            body.append(f'<g transform="translate({x:.3f} {y:.3f})">{body[-1]}</g>')
     return put(at.with_suffix(".svg"), sheet_of("".join(body)))
 
 
 def lines(random, at: Path) -> Path:
-    return put(at.with_suffix(".svg"), random_svg(random))
+    text = random_svg(random)
+    if random.random() < 0.3:
+        x, y = random.uniform(-5, 5, 2)
+        text = text.replace("</svg>", f'<use href="#s0" transform="translate({x:.3f} {y:.3f})"/></svg>')
+    return put(at.with_suffix(".svg"), text)
 
 
 def dots(random, at: Path) -> Path:
