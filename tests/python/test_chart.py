@@ -434,6 +434,14 @@ def test_a_machine_that_does_not_reach_the_depths_of_the_brush_is_refused(dabs):
             chart(brush, A4, deepest_mm=reached, dabs=dabs)
 
 
+@pytest.mark.parametrize("cell", [name for name in cell_names() if find_cell(name).pen])
+def test_a_chart_is_refused_for_a_pen_that_is_up_or_down(cell, tmp_path, capsys):
+    """The refusal is the only one, and does not advise the brush rigid, of which there is no chart either."""
+    status, _, reported = in_json(capsys, "chart", "-o", tmp_path / "c.json", "--cell", cell)
+    assert status == 1 and len(reported) == 1, reported
+    assert agrees(reported[0][1], f"pen-depth {cell}") and "rigid" not in reported[0][1].text, reported
+
+
 @pytest.mark.parametrize("sheet", ["9x9", "1x5000"])
 def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
     status, _, ((_, reported),) = in_json(capsys, "chart", "-o", tmp_path / "c.json", "--sheet", sheet)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from .... import _core
-from ....errors import Notice
+from ....errors import Error, Notice
 from ....jobs.conversion import estimate_output_time_s
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine import preflight, writer
@@ -59,6 +59,11 @@ def chart_file(args) -> None:
     with refuse_errors(args.output):
         if suffix != ".json":
             writer.post_for(suffix, cell)
+        if cell.pen and not brush.is_rigid():
+            sentence = (
+                f"the pen of cell {cell.name} is up or down: it cannot press the brush to the several depths of a chart"
+            )
+            raise Error(sentence, code="pen-depth")
         stage("laying out the chart")
         laid_out = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
         loads, marks = split_into_loads(laid_out.plan, brush, cell), _core.simulate(laid_out.plan, brush)
