@@ -221,3 +221,19 @@ def test_a_cropped_picture_is_not_reported_as_bulging_paper(cut, sag_mm, code):
     with pytest.raises(Error) as refusal:
         find_view(np.ascontiguousarray(whole[:, : cut[1]]), printed)
     assert refusal.value.code == code
+
+
+def test_the_thin_marks_of_a_displaced_sheet_are_read():
+    """Marks of a liner are 1 to 2 mm wide. On a displaced sheet they are outside of their boxes."""
+    made = chart(find_brush("liner-1"), A5, "few")
+    marks = _core.simulate(made.plan, find_brush("liner-1"))
+    _core.trace_outlines(marks, find_brush("liner-1"))
+    painted = {one.stroke: [np.array(ring) + np.array((2.0, 1.5)) for ring in one.outline_mm] for one in marks.passes}
+    sheet = photograph.page(made)
+    for rings in painted.values():
+        sheet.paint(rings, BLUE)
+    read = read_chart_photos(made, [("photo.jpg", photograph.encoded(photograph.exposed(sheet, CAMERA)))])
+    assert not read.marks.missing and not read.marks.joined
+    for stroke, rings in read.marks.outlines_mm.items():
+        for end in (np.min, np.max):
+            assert end(np.vstack(rings), axis=0) == pytest.approx(end(np.vstack(painted[stroke]), axis=0), abs=1.0)

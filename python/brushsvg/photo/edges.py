@@ -204,7 +204,8 @@ def _number_nearest_boxes(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarr
 def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
     """Assign each piece of paint to the stroke whose box holds most of it.
 
-    Where marks are in the boxes of other strokes, as with a leaning tool, the boxes are moved with the lean first.
+    Where marks are in the boxes of other strokes, as with a leaning tool or a displaced sheet, the boxes are moved
+    with them first.
     paint: from paint_seen, or a mean over several pictures.
     """
     try:
@@ -212,26 +213,26 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
     except Error as refusal:
         if refusal.code != "photo-paint-elsewhere":
             raise
-        leaning_boxes = _lean_boxes(paint, flat, stroke_boxes)
-        if leaning_boxes is None:
+        moved_boxes = _move_boxes_to_paint(paint, flat, stroke_boxes)
+        if moved_boxes is None:
             raise
         try:
-            return _assign_marks_once(paint, flat, leaning_boxes, labels_mm)
+            return _assign_marks_once(paint, flat, moved_boxes, labels_mm)
         except Error:
             raise refusal from None
-    if (marks.joined or marks.missing) and (leaning_boxes := _lean_boxes(paint, flat, stroke_boxes)) is not None:
+    if (marks.joined or marks.missing) and (moved_boxes := _move_boxes_to_paint(paint, flat, stroke_boxes)) is not None:
         with contextlib.suppress(Error):
-            retried = _assign_marks_once(paint, flat, leaning_boxes, labels_mm)
+            retried = _assign_marks_once(paint, flat, moved_boxes, labels_mm)
             if len(retried.joined) + len(retried.missing) < len(marks.joined) + len(marks.missing):
                 return retried
     return marks
 
 
-def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
-    """Move the boxes in proportion to depth, so that their middles match most parts of the paint.
+def _move_boxes_to_paint(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
+    """Move the boxes so that their middles match most parts of the paint.
 
-    Returns None where no depth is known. Returns None also where one shift of all boxes fits better, because then the
-    sheet was out of place.
+    They move in proportion to depth, as with a leaning tool, or all by one shift, as on a displaced sheet, whichever
+    fits better. Returns None where no depth is known, and where the shift exceeds MAX_STRAY_MM.
     """
     depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
@@ -263,10 +264,12 @@ def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) ->
             reach /= 10
         return total_distance_mm(factors), factors
 
-    distance_mm, lean = fit_boxes(depths)
-    is_shifted = fit_boxes(np.full(len(depths), depths.max()))[0] < distance_mm
-    if is_shifted:
-        return None
+    everywhere = np.full(len(depths), depths.max())
+    (lean_distance_mm, lean), (shift_distance_mm, shift) = fit_boxes(depths), fit_boxes(everywhere)
+    if shift_distance_mm < lean_distance_mm:
+        if np.hypot(*(depths.max() * shift)) > MAX_STRAY_MM:
+            return None
+        depths, lean = everywhere, shift
     moved = boxes + np.outer(depths, np.tile(lean, 2))
     return [
         replace(stroke_box, box_mm=tuple(box)) for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
