@@ -11,7 +11,7 @@ from brushsvg import _core
 from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.calibration.marks.mark_input import Painted
-from brushsvg.calibration.marks.mark_report import measure_mean_overlaps
+from brushsvg.calibration.marks.mark_report import _unexpected, measure_mean_overlaps
 from brushsvg.machine.cells.cell import list_uncorrectable_keys, reason_for_no_backlash
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
@@ -88,3 +88,18 @@ def test_the_table_for_a_cell_marks_lines_without_effect_on_some_machines(name):
         if any(of and re.search(rf"\b{kind}\b", remark) for kind, of in kinds.items())
     }
     assert of_no_use == list_uncorrectable_keys(cell).keys() & remarks.keys()
+
+
+@pytest.mark.parametrize(("sigma_mm", "advised", "kept"), [(0.3, ["2", "0.05"], None), (0.05, ["0.05", "2"], "0.05")])
+def test_a_measured_height_is_to_be_kept(sigma_mm, advised, kept):
+    """A liner's lines look like high paper. With a larger --height, its measured height would be given up."""
+    expected = _core.MarkOptions()
+    expected.height_mm = _core.Prior(0.0, sigma_mm)
+    fit = SimpleNamespace(
+        height_mm=1.42, shift_mm=(0.0, 0.0), turn_rad=0.0, marks=[SimpleNamespace(displacement_mm=(0.0, 0.0))]
+    )
+    painted = SimpleNamespace(marks=[SimpleNamespace(stroke="arc-1")])
+    calibration = SimpleNamespace(fit=fit, expected=expected, painted=painted, strays=())
+    (sentence,) = _unexpected(calibration, of_photo=True)
+    assert re.findall(r"--height ([\d.]*\d)", sentence) == advised
+    assert (re.findall(r"keep --height ([\d.]*\d)", sentence) or [None]) == [kept]

@@ -239,7 +239,7 @@ def _unexpected(calibration, of_photo: bool = False) -> list[str]:
     )
     return [
         f"{what} {size:.2g} {_unit(key)}, but the fit expects {sigma:.2g} {_unit(key)} (standard deviation). This "
-        f"biases the laws{_remedy(key, _round_up(size), of_photo)}"
+        f"biases the laws{_remedy(key, _round_up(size), sigma, of_photo)}"
         for key, what, size, sigma, times in checks
         if size > times * sigma > 0
     ]
@@ -249,12 +249,16 @@ def _unit(key: str) -> str:
     return "degrees" if key.endswith("_deg") else "mm"
 
 
-def _remedy(key: str, sigma: float, of_photo: bool) -> str:
+def _remedy(key: str, sigma: float, expected_sigma: float, of_photo: bool) -> str:
     if not of_photo:
         return f': if the sheet is no more exact than this, add "expected": {{"{key}": {sigma:g}}} to the measurements'
+    is_measured = expected_sigma < _core.MarkOptions().height_mm.sigma
     of_flags = {
         "height_mm": (
-            f": if you do not know the height better, add --height {sigma:g}. Lines of a liner are wide at first "
+            f": if you measured the height, keep --height {expected_sigma:g}, because lines of a liner are wide at "
+            f"first touch, which looks like high paper. If you did not, use --height {sigma:g}"
+            if is_measured
+            else f": if you do not know the height better, add --height {sigma:g}. Lines of a liner are wide at first "
             "touch, which looks like high paper: for a liner, measure the height (brushsvg setup height) and add "
             "--height 0.05"
         ),
