@@ -11,7 +11,7 @@ from programs import LANGUAGES, call, whole
 from sampling import sample
 
 from brushsvg import _core
-from brushsvg.machine.cells.cell import Paper, robot_from_paper
+from brushsvg.machine.cells.cell import Paper, least_move_mm, robot_from_paper, unit_mm
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.job_program import unchecked_program
 from brushsvg.machine.moves import duration_s
@@ -152,6 +152,20 @@ def test_check_accepts_a_landing_between_two_coarse_values():
     ]
     servo = replace(find_cell("grbl-servo").servo, table=((-10.0, 0.0), (5.0, 60.0)), step_mm=0.05)
     assert found_by_check(poses, [], replace(cell_of("grbl-servo", 3), servo=servo))[1] is None
+
+
+@pytest.mark.parametrize("name", ["axidraw-ebb", "grbl-servo"])
+def test_poses_that_rounding_leaves_out_are_within_a_move_of_the_path(name):
+    """A pose at a similar height was left out first, and then the pose before it for its place."""
+    chance, cell = random.Random("tiny strokes"), find_cell(name)
+    for _ in range(200):
+        x, y = chance.uniform(20, 40), chance.uniform(20, 40)
+        step_mm = least_move_mm(cell) * chance.uniform(0.4, 1)
+        near = [(x + k * step_mm, y, -4 - 0.01 * k) for k in range(3)]
+        a_pass = _core.Pass("s", np.array([(x + 6, y, 0), *near, (x + 6, y, 0)]), 20.0)
+        written = as_written(a_pass, cell, np.eye(4)).poses_mm
+        limit_mm = least_move_mm(cell) + unit_mm(cell)
+        assert max(np.hypot(*(written[:, :2] - place[:2]).T).min() for place in near) <= limit_mm
 
 
 @pytest.mark.parametrize("turn_deg", np.linspace(99.99, 100.01, 9))

@@ -69,7 +69,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     if sideways_mm > MAX_VERTICAL_SIDEWAYS_MM and not was_read:
         a_pass = _straighten_lifts(a_pass, sideways_mm + 2**0.5 * unit)
     a_pass = commanded_pass(a_pass, cell)
-    exact = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
+    exact = np.array(a_pass.poses_mm, dtype=float).reshape(-1, 3)
 
     def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
@@ -83,7 +83,11 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
         dense_poses, arcs = add_chords(exact, others, arcs)
         if len(dense_poses) > len(exact):
             exact, poses = dense_poses, on_grid(dense_poses)
-    poses_run = _at_servo_values(poses, cell.servo) if cell.servo else poses
+    poses_run = poses
+    if cell.servo:  # first, so that a pose that is left out is never further than least_mm from where the servo stands
+        held_rows = _servo_rows(poses[:, :2], least_mm)
+        poses[:, :2], exact[:, :2] = poses[held_rows, :2], exact[held_rows, :2]
+        poses_run = _at_servo_values(poses, cell.servo)
     kept = _select_distinct_poses(poses_run, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):
         arcs = [
@@ -92,8 +96,6 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
         ]
     exact, poses = exact[kept], poses[kept]
     if cell.servo:
-        held_rows = _servo_rows(poses[:, :2], least_mm)
-        poses[:, :2], exact[:, :2] = poses[held_rows, :2], exact[held_rows, :2]
         # Rounding may have made a lift on the spot a short steep path.
         steep = is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read)
         on_arcs = [row for arc in arcs for row in range(arc.first, arc.last)]
