@@ -162,7 +162,8 @@ def _read_settings(document: dict, folder: str) -> dict[str, object]:
 
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):
-        raise Error("defaults is written as a table, [defaults]", where="defaults", code="wrong-type")
+        advice = "write [defaults] on a line by itself, and the options below it"
+        raise Error("this is not a table", where="defaults", code="wrong-type", advice=advice)
     choice_by_key = list_default_keys()
     for key in document:
         _refuse_unknown(key, CHOICE_BY_TOP_KEY, choice_by_key, "write it below [defaults]")

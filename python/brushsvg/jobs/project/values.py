@@ -20,32 +20,32 @@ def read_value(choice: str, value: object, key: str) -> object:
 
     try:
         if choice == "join":
-            require_type(value, bool, "true or false", key)
+            require_type(value, bool, "true or false")
             return value
         if choice in ("layer", "skip_region", "skip_comment"):
-            require_type(value, list, "a list of texts", key)
-            return [_read_typed(choice, _format_as_typed(each, key), key) for each in value]
-        text = _format_as_typed(value, key)
+            require_type(value, list, "a list of texts")
+            return [_read_typed(choice, _format_as_typed(each)) for each in value]
+        text = _format_as_typed(value)
         if choice in CHOICE_VALUES and text not in CHOICE_VALUES[choice]:
             allowed = CHOICE_VALUES[choice]
-            sentence = f"{key} {text[:40]!r} is not known{did_you_mean(text, allowed)} Known are {', '.join(allowed)}"
+            sentence = f"{text[:40]!r} is not known{did_you_mean(text, allowed)} Known are {', '.join(allowed)}"
             raise Error(sentence, code="choice-unknown")
-        return _read_typed(choice, text, key)
+        return _read_typed(choice, text)
     except Error as refusal:
         raise Error(
             refusal.sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice
         ) from None
 
 
-def _format_as_typed(value: object, key: str) -> str:
+def _format_as_typed(value: object) -> str:
     """Return the text that a user would type for a value of TOML."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return str(value)[:400]
-    require_type(value, str, "a text or a number", key)
+    require_type(value, str, "a text or a number")
     return str(value)
 
 
-def _read_typed(choice: str, text: str, key: str) -> object:
+def _read_typed(choice: str, text: str) -> object:
     from ..choices.choice_checks import read_colour
     from ..choices.choices import CHOICE_RANGES
 
@@ -60,7 +60,7 @@ def _read_typed(choice: str, text: str, key: str) -> object:
     } | dict.fromkeys(("width", "lag", "tolerance", "z_offset", "paper_z"), length_mm)
     value = readers.get(choice, _read_words)(text)
     if choice in CHOICE_RANGES:
-        return need_number(value, key, *CHOICE_RANGES[choice])
+        return need_number(value, "the value", *CHOICE_RANGES[choice])
     return value
 
 
