@@ -125,7 +125,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
     corrections, strokes_a_load = "", STROKES_A_LOAD
     for sheet in range(sheets):
         brush, cell = f"mine-{sheet}.json", f"cell-{sheet}.toml"
-        flags = f"--brush {brush} --quiet"
+        flags = f"--brush {brush}"
         corrections_flag = f"--corrections {corrections}" if corrections else ""
         run(f"convert word.svg -o plan-{sheet}.json --cell {cell} {flags} {corrections_flag}", folder)
         plan = read_plan(folder / f"plan-{sheet}.json")
@@ -205,7 +205,7 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
         (folder / f"mine-{sheet + 1}.json").write_bytes((folder / f"mine-{sheet}.json").read_bytes())
         return strokes_a_load, ""
     words = f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
-    text = run(f"{words} --quiet --corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
+    text = run(f"{words} --corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
     (folder / f"corrected-{sheet}.txt").write_text(text)
     left = json.loads((folder / f"left-{sheet}.json").read_text())
     rows = left.get("beside_machine", left)["strokes"]

@@ -38,7 +38,8 @@ def main() -> None:
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
         measured = inkex.load_svg(args.input_file).getroot()
-        report, warnings = run.finish()
+        report, lines = run.finish()
+        warnings = [line for line in lines if not line.startswith("brushsvg: ")]  # that line says what was written
         page, made, read_by = (run.made(name) for name in ("page.svg", program, "read-by.json"))
     _insert(etree, document.getroot(), measured, etree.fromstring(page), report.splitlines()[0])
     document.write(sys.stdout.buffer)

@@ -175,11 +175,12 @@ class Run:
 
     def __init__(self, chosen: str, drawing: str, *words: str):
         self.program, self.words = executable(chosen), words
+        quiet = [] if words[0] == "chart" else ["--quiet"]  # the page of a chart shows its report
         self.folder = tempfile.TemporaryDirectory(prefix="brushsvg")
         shutil.copyfile(drawing, os.path.join(self.folder.name, DRAWING))
         try:
             self.process = subprocess.Popen(
-                [self.program, "--messages", "json", *words, "--quiet"],
+                [self.program, "--messages", "json", *words, *quiet],
                 cwd=self.folder.name,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,

@@ -74,7 +74,7 @@ def centre(rings):
 
 
 def compare(folder, capsys, photo="photo.jpg", *flags):
-    status = main(["compare", str(folder / photo), str(folder / "four.svg"), "--quiet", *flags])
+    status = main(["compare", str(folder / photo), str(folder / "four.svg"), *flags])
     return status, capsys.readouterr()
 
 

@@ -116,7 +116,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     (desk / "nowhere.toml").write_text(f'{cell}\n{paint}colours = ["#ff0000"]\n')
     assert run(capsys, "convert", "a.svg", "-o", "own.ngc")[0] == 0
     before = listing(desk)
-    status, out, err = run(capsys, *words.split())
+    status, _, err = run(capsys, *words.split())
     made = {name: data for name, data in listing(desk).items() if name not in before}
     assert status == 0 and made
     *warnings, line = err
@@ -126,7 +126,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     assert re.fullmatch(re.escape(f"brushsvg: {named}: ") + "[a-z]+" + (f"; {known}" if known else ""), line), line
     for name in made:
         (desk / name).unlink()
-    assert run(capsys, *words.split(), "--quiet") == (0, out, warnings)
+    assert run(capsys, *words.split(), "--quiet") == (0, "", warnings)
     assert {name: data for name, data in listing(desk).items() if name not in before} == made
 
 
@@ -170,6 +170,8 @@ def test_predict_draws_and_report_prints(desk, capsys, source):
     status, out, err = run(capsys, "preview", source, "--json")
     assert [row["stroke"] for row in json.loads(out)["strokes"]] == ["line", "dab"]
     assert json.loads(out)["verdict"]
+    assert run(capsys, "preview", source, "--json", "--quiet") == (status, out, err)
+    assert run(capsys, "preview", source, "--quiet") == (0, "", [])
     assert (json.loads(out)["total"]["overlap"] is None) == (source == "plan.json")
 
 

@@ -87,13 +87,13 @@ def _run_command(argv: list[str] | None, interrupts: _Interrupts) -> int:
 
     from ..errors import describe_unexpected
     from .arguments.parser import parse
-    from .console import RefusedError, say_notice, use_json_messages
+    from .console import RefusedError, say_notice, set_output
 
     file = ""
     try:
-        use_json_messages(False)
+        set_output(json_messages=False, quiet=False)
         args = parse(argv)
-        use_json_messages(args.messages == "json")
+        set_output(args.messages == "json", getattr(args, "quiet", False) and not getattr(args, "json", False))
         file = getattr(args, "input", "")
         from . import commands
         from .steps.project_settings import use_project

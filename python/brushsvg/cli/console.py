@@ -64,7 +64,9 @@ def discard_output(stream) -> None:
 
 
 def print_text(text: str) -> None:
-    """Print the result of a command on stdout."""
+    """Print the result of a command on stdout, unless --quiet."""
+    if _is_quiet:
+        return
     if sys.stdout is None:
         raise RefusedError("standard output", [Notice("", "it is closed", code="file-unwritable")])
     clear_stage()
@@ -85,13 +87,13 @@ def say_notice(file: str, notice: Notice) -> None:
         _write_line(json.dumps({"file": file, **notice.as_json()}))
 
 
-def use_json_messages(is_on: bool) -> None:
-    """Set whether warnings and refusals are printed as JSON from now on."""
-    global _in_json
-    _in_json = is_on
+def set_output(json_messages: bool, quiet: bool) -> None:
+    """Set whether warnings and refusals are printed as JSON from now on, and whether results are not printed."""
+    global _in_json, _is_quiet
+    _in_json, _is_quiet = json_messages, quiet
 
 
-_in_json = False
+_in_json = _is_quiet = False
 
 
 def stage(text: str) -> None:

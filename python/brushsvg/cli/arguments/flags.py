@@ -101,7 +101,9 @@ def add_margin_strokes(command: argparse.ArgumentParser) -> None:
 
 
 def add_quiet(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--quiet", action="store_true", help="print warnings only")
+    is_report = any(action.dest == "json" for action in command._actions)
+    only = "warnings, and the report of --json, only" if is_report else "warnings only"
+    command.add_argument("--quiet", action="store_true", help=f"print {only}")
 
 
 def add_write_options(command: argparse.ArgumentParser) -> None:

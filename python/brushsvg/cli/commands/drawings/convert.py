@@ -65,9 +65,9 @@ def convert_file(args) -> None:
         figures and figures.total.overlap,
         "" if args.per_colour else _describe_pen_changes(simulations[0], args.from_stroke),
     )
-    if figures and not args.quiet:
+    if figures:
         print_text(f"{figures.verdict}\n")
-    if not args.quiet and (words := describe_expected_accuracy(work)):
+    if words := describe_expected_accuracy(work):
         print_text(f"{words}\n")
 
 

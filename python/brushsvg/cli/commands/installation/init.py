@@ -62,8 +62,7 @@ def init_project(args) -> None:
         _check_speed(speed, brush, cell, folder)
     text = write_project(brush or None, cell, paper, speed)
     write_outputs(args, {args.output: text}, sources=[args.output])
-    if not args.quiet:
-        print_text("".join(f"{line}\n" for line in _list_next_steps(brush)))
+    print_text("".join(f"{line}\n" for line in _list_next_steps(brush)))
 
 
 def _list_machines() -> list[str]:
