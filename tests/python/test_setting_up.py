@@ -109,6 +109,29 @@ def test_setup_programs_are_also_written_in_a_binary_format(desk):
     assert own == brushsvg.setup_height("fr3", "py.cdr").text == Path("py.cdr").read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("workspace", "code", "key"),
+    [
+        ({"box_mm": ((-500.0, -900.0, -50.0), (-120.0, -200.0, 500.0))}, "out-of-box", "box_mm"),
+        ({"box_mm": ((-500.0, -900.0, -50.0), (500.0, -200.0, 30.0))}, "out-of-box z", "box_mm"),
+        ({"reach_mm": (200.0, 620.0)}, "out-of-reach", "reach_mm"),
+        ({"keep_out_mm": (((-129.0, -800.0, -50.0), (-120.0, -200.0, 500.0)),)}, "in-kept-out-box", "keep_out_mm"),
+    ],
+)
+def test_setup_programs_beyond_a_limit_of_place_are_refused_with_a_remedy(desk, workspace, code, key):
+    cell = brushsvg.find_cell("ur5e")
+    cell = replace(cell, workspace=replace(cell.workspace, **workspace))
+    for setup in (
+        lambda: brushsvg.setup_height(cell),
+        lambda: brushsvg.setup_first_run(cell),
+        lambda: brushsvg.setup_border("word.svg", cell=cell),
+        lambda: brushsvg.convert("word.svg", cell=cell).program(".script"),
+    ):
+        with refused(code) as reported:
+            setup()
+        assert f"workspace.{key}" in reported.value.advice
+
+
 def test_setup_programs_refuse_wrong_values(desk):
     with refused("program-format"):
         brushsvg.setup_border("word.svg", "border.script", cell="grbl-3axis")

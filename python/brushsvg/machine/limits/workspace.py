@@ -188,7 +188,8 @@ def _check_sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_
                 f"the TCP goes {beyond - margin:.2f} mm beyond the {side} edge of the workspace, "
                 f"which is the sheet and {margin:.1f} mm around it"
             )
-            yield Notice("", sentence, code="tool-off-sheet", about=side)
+            advice = "move the drawing away from this edge, or raise workspace.margin_mm of the cell if there is room"
+            yield Notice("", sentence, code="tool-off-sheet", about=side, advice=advice)
 
 
 def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -> Iterator[Notice]:
@@ -202,7 +203,7 @@ def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: fl
                 f"the tool goes to {name} {_outside_text(shown_mm, low, high)} mm, outside the range "
                 f"[{low:g}, {high:g}] mm of workspace.box_mm of cell {cell.name}{less}"
             )
-            yield Notice("", sentence, code="out-of-box", about=name)
+            yield Notice("", sentence, code="out-of-box", about=name, advice=_advise("box_mm", cell, name == "z"))
     if cell.servo:  # the paper is level, and a height beyond the table would silently become its last height
         heights = [row[0] for row in cell.servo.table]
         low, high = min(heights), max(heights)
@@ -212,9 +213,10 @@ def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: fl
                     f"height {_outside_text(height, low, high)} mm is outside the range [{low:g}, {high:g}] mm of the "
                     f"servo of cell {cell.name}"
                 )
+                advice = "measure a lower row of its table"
                 if height > high:  # the paper is higher than the table allows
-                    sentence += ": measure a higher row of its table, or lower safe_mm"
-                yield Notice("", sentence, code="servo-out-of-range")
+                    advice = "measure a higher row of its table, or lower safe_mm"
+                yield Notice("", sentence, code="servo-out-of-range", advice=advice)
 
 
 def _check_reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm: float) -> Iterator[Notice]:
@@ -227,7 +229,7 @@ def _check_reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, sla
             f"the tool goes {_outside_text(shown_mm, min_mm, max_mm)} mm away from the robot's origin, outside the "
             f"range [{min_mm:g}, {max_mm:g}] mm of the reach of cell {cell.name}"
         )
-        yield Notice("", sentence, code="out-of-reach")
+        yield Notice("", sentence, code="out-of-reach", advice=_advise("reach_mm", cell))
 
 
 def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
@@ -239,7 +241,14 @@ def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
         where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
         box = ", ".join(f"{axis} {a:g} to {b:g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True))
         sentence = f"the tool goes through {where} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
-        yield Notice("", sentence, code="in-kept-out-box", about=str(number))
+        yield Notice("", sentence, code="in-kept-out-box", about=str(number), advice=_advise("keep_out_mm", cell))
+
+
+def _advise(key: str, cell: Cell, is_height: bool = False) -> str:
+    """Return what to do about a broken limit of place, which is a key of the cell's table [workspace]."""
+    moved = "the paper or the station" if cell.stations else "the paper"
+    instead = "change the table [heights] of the cell" if is_height else "use a smaller sheet or drawing"
+    return f"move {moved}, {instead}, or change workspace.{key} of the cell if the tool may go there"
 
 
 def _outside_text(value: float, low: float, high: float) -> str:
