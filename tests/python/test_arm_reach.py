@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arm_judge import judge_of
-from diagnostics import agrees, gives, in_json, is_reported
+from diagnostics import agrees, are_reported, gives, in_json, is_reported
 from sampling import sample
 from test_arm import DESCRIBED, about, placed
 
@@ -231,6 +231,20 @@ def test_place_paper_changes_only_the_paper_of_the_cell():
     far = replace(cell, paper=replace(cell.paper, origin_mm=(-150.0, -1100.0, 20.0)))
     moved = brushsvg.place_paper(far).cell
     assert moved.paper != far.paper and replace(moved, paper=far.paper) == far
+
+
+def test_place_paper_reports_notices_of_the_drawing_and_choices_without_effect(tmp_path):
+    drawing = tmp_path / "d.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm" viewBox="0 0 60 40">'
+        '<path d="M20 20H40" fill="none" stroke="#000" stroke-width="3"/><text id="t" x="9" y="9">a</text></svg>'
+    )
+    assert are_reported(brushsvg.place_paper("ur5e", drawing).notices, "text-unread")
+    choices = {"z_offset": 1.0, "compensation": "none", "colour": "#000", "paint_speed": 9.0, "fit": (30.0, 30.0)}
+    found = brushsvg.place_paper("ur5e", **choices).notices
+    assert {each.code for each in found} == {"flag-without-effect"}
+    assert [each.about for each in found] == ["z-offset", "colour", "speed", "fit", "compensation"]
+    assert brushsvg.place_paper("ur5e", sheet=(100.0, 80.0), brush="liner-1").notices == ()
 
 
 def test_place_suggests_no_joints_to_begin_with_if_no_place_was_found(capsys, tmp_path):

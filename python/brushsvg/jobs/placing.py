@@ -22,7 +22,12 @@ from ..model.library import find_brush
 from .choices.choice_checks import refuse_file_used_twice
 from .choices.choices import ChoiceKeywords, Choices, path_of, suffix_of
 from .choices.drawing_settings import fill_from_drawing
-from .choices.ineffective_flags import LAYOUT_FLAGS, report_flags_without_effect, report_ineffective_flags
+from .choices.ineffective_flags import (
+    LAYOUT_FLAGS,
+    PLANNING_FLAGS,
+    report_flags_without_effect,
+    report_ineffective_flags,
+)
 from .conversion import check_output_path, make_choices
 from .options import DEFAULT_BRUSH, load_brush, load_cell, make_options
 from .preparation import preparation
@@ -132,8 +137,9 @@ def find_placement(
 
 def _program_to_place(chosen: Choices, cell: Cell, stage: Stage, warn: Warn) -> tuple[Program, tuple[float, float]]:
     """Return a drawing's program, or one that goes round the whole sheet, and the size of the sheet."""
+    warn(path_of(chosen.cell), report_flags_without_effect(chosen, ["z-offset"], "the place of the paper"))
     if chosen.input is None:
-        flags = (flag for flag in (*LAYOUT_FLAGS, "wide") if flag != "sheet")
+        flags = (flag for flag in ("colour", "speed", *LAYOUT_FLAGS, *PLANNING_FLAGS) if flag != "sheet")
         warn(path_of(chosen.cell), report_flags_without_effect(chosen, flags, "the whole sheet"))
         sheet_mm = chosen.sheet or DEFAULT_SHEET_MM
         brush = load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
@@ -143,5 +149,6 @@ def _program_to_place(chosen: Choices, cell: Cell, stage: Stage, warn: Warn) -> 
         chosen = fill_from_drawing(chosen, chosen.input)
         warn(drawing, report_ineffective_flags(chosen))
         work = preparation.prepare(chosen.input, make_options(chosen, cell), stage)
+        warn(drawing, work.notices)
         loads = split_into_loads(work.plan, work.brush, work.options.cell)
     return whole_program(loads, work.brush, work.options.cell), work.plan.sheet_mm
