@@ -88,6 +88,21 @@ def test_programs_for_a_kuka_have_names_that_its_controller_knows(desk, capsys):
     assert is_reported(in_json(capsys, *words)[2], f"programs-of-before {' '.join(files)}")
 
 
+def test_programs_for_a_fanuc_have_short_names(desk, capsys):
+    """Names of FANUC controllers have 8 characters. Each of these programs once had another name there."""
+    words = "convert", "word.svg", "--cell", "lrmate200id"
+    status, _, reported = in_json(capsys, *words, "-o", "waves.ls", "--per-colour")
+    files = ["waves_c1.ls", "waves_c2.ls", "waves_c3.ls"]
+    assert status == 0 and not is_reported(reported, "program-renamed")
+    assert sorted(path.name for path in desk.glob("waves*")) == files
+    assert is_reported(in_json(capsys, *words, "-o", "waves.ls")[2], f"programs-of-before {' '.join(files)}")
+    _, _, reported = in_json(capsys, *words, "-o", "long-name.ls", "--per-colour")
+    renamed = [notice for _, notice in reported if notice.code == "program-renamed"]
+    assert renamed and all("-o" in notice.advice for notice in renamed)
+    programs = [path.read_text() for path in desk.glob("long-name*")]
+    assert len({re.search(r"/PROG +(\w{1,8})\n", text)[1] for text in programs}) == len(programs) == 3
+
+
 def test_a_program_just_written_is_not_outdated(desk, capsys):
     """The program at ./out.ngc was once taken for one of an earlier run, with the advice to delete it."""
     for output in ("./out.ngc", f"{desk}//out.ngc"):

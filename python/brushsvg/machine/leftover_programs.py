@@ -18,7 +18,7 @@ def report_leftover_programs(output: str, files: Collection[str]) -> list[Notice
     files: the paths that this run writes.
     """
     path = Path(output)
-    name = re.compile(rf"{re.escape(path.stem)}([-_]\d+[-_][0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
+    name = re.compile(rf"{re.escape(path.stem)}([-_]\d+[-_][0-9a-f]{{6}}|_c\d+)?(-part\d+)?{re.escape(path.suffix)}")
     existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
     existing += [each for each in _list_called_before(output) if path.with_name(each).exists()]
     written = set(map(Path, files))  # a path may be spelled ./out.ngc

@@ -5,6 +5,7 @@ A picture and figures can be written as well.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy  # noqa: F401  # before the core: if memory is short, numpy then raises an exception instead of exiting
@@ -51,7 +52,11 @@ def convert_file(args) -> None:
         if args.report:
             figures = outputs.make_report(whole_work, marks, work.options.cell)
             files[args.report] = report.as_text(suffix_of(args.report), figures)
-    warn(args.input, dict.fromkeys(notice for simulated in simulations for notice in simulated.remarks()))
+    remarks = dict.fromkeys(notice for simulated in simulations for notice in simulated.remarks())
+    if args.per_colour:
+        advice = "give -o a short name of letters and digits that begins with a letter"
+        remarks = [replace(each, advice=advice) if each.code == "program-renamed" else each for each in remarks]
+    warn(args.input, remarks)
     warn_about_cell(args, simulations[0].cell)
     warn(args.output, report_leftover_programs(args.output, files))
     strokes = sum(len(simulated.loads.loads) for simulated in simulations) - args.from_stroke + 1
@@ -74,17 +79,17 @@ def convert_file(args) -> None:
 def _split_by_colour(output: str, work: PreparedDrawing) -> list[tuple[str, PreparedDrawing]]:
     """Return a file name and the work for each colour, the lightest colour first."""
     return [
-        (_name_program(Path(output), f"{number}-{colour[1:]}", work.options.cell), select_colour(work, colour))
+        (_name_program(Path(output), number, colour[1:], work.options.cell), select_colour(work, colour))
         for number, colour in enumerate(list_colours(work), 1)
     ]
 
 
-def _name_program(path: Path, part: str, cell: Cell) -> str:
+def _name_program(path: Path, number: int, colour: str, cell: Cell) -> str:
     """Return the path of the program for a colour, with a name that the controller can have, if possible."""
-    name = f"{path.stem}-{part}"
-    possible_name = f"{path.stem}_{part.replace('-', '_')}"  # KUKA controllers allow no "-"
-    renamed = [bool(report_renamed(each, path.suffix.lower(), cell)) for each in (name, possible_name)]
-    return str(path.with_name((possible_name if renamed == [True, False] else name) + path.suffix))
+    # KUKA controllers allow no "-", and names of FANUC controllers have 8 characters.
+    names = [f"{path.stem}-{number}-{colour}", f"{path.stem}_{number}_{colour}", f"{path.stem}_c{number}"]
+    possible = (name for name in names if not report_renamed(name, path.suffix.lower(), cell))
+    return str(path.with_name(next(possible, names[0]) + path.suffix))
 
 
 def _simulate_or_refuse(args, path: str, work: PreparedDrawing) -> conversion.SimulatedWork:
