@@ -16,29 +16,35 @@ def add_chart(commands) -> None:
     flags.add_output(chart, f"a plan (.json) or {flags.PROGRAM_HELP}")
     chart.add_argument("--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6")
     chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
-    chart.add_argument("--drawing", metavar="FILE", help="take brush and cell from this drawing, unless given")
+    chart.add_argument(
+        "--drawing", metavar="FILE", help="take the brush and the cell from this drawing, unless you give them"
+    )
     chart.add_argument(
         "--sheet",
         metavar="WxH",
         type=values.sheet,
         default=PAPERS_MM["a4"],
-        help=f"or {', '.join(PAPERS_MM)}; default: a4",
+        help=f"the sheet: {', '.join(PAPERS_MM)}, or its size; default: a4",
     )
     chart.add_argument(
-        "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
+        "--strokes",
+        choices=("few", "normal", "many"),
+        help="how many strokes; default: as many as the sheet has room for",
     )
     chart.add_argument(
         "--dabs",
         action="store_true",
-        help="dabs instead of strokes, to measure the footprints of a brush whose lag is known: give it with --brush",
+        help="dabs instead of strokes, to measure the footprints of a brush whose lag is known; name it with --brush",
     )
     chart.add_argument(
         "--paint",
         action="store_true",
-        help="strokes to paint with one load, each depth early and late, for calibrate --paint, which finds how marks "
+        help="strokes to paint with one load, each depth early and late; calibrate --paint finds from them how marks "
         "narrow as paint runs out",
     )
-    chart.add_argument("--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)")
+    chart.add_argument(
+        "--page", metavar="FILE", help="also write the page to print, with markers and labels (.pdf .svg)"
+    )
     chart.add_argument(
         "--chart",
         metavar="FILE",
@@ -106,7 +112,9 @@ def add_calibrate(commands) -> None:
         help="what the fit minimizes: squared or absolute residuals; default: squares",
     )
     calibrate.add_argument(
-        "--total", action="store_true", help="total least squares for series of angles; default: ordinary"
+        "--total",
+        action="store_true",
+        help="fit series of angles by total least squares; default: by ordinary least squares",
     )
     calibrate.add_argument(
         "--machine",
@@ -257,7 +265,9 @@ def add_brush(commands) -> None:
     subcommands = flags.add_list_show_check(
         commands, "brush", "list, show, check, draw and create brushes", "laws and ranges", "brush.json"
     )
-    new = subcommands.add_parser("new", help="write a brush file from a few numbers; asks for them if you give none")
+    new = subcommands.add_parser(
+        "new", help="write a brush file from a few numbers; brushsvg asks for them if you give none"
+    )
     flags.add_output(new, "the brush file (.json); its name becomes the brush's name")
     new.add_argument(
         "--lag",

@@ -70,7 +70,7 @@ def add_batch(commands) -> None:
         metavar="IN",
         nargs="*",
         help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line); "
-        "brushsvg.toml near the first one serves all",
+        "the brushsvg.toml of the first drawing applies to all",
     )
     flags.add_output(batch, "a folder for programs, pictures and tables")
     batch.add_argument("--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)")
@@ -80,7 +80,7 @@ def add_batch(commands) -> None:
         "--format",
         metavar="EXT",
         choices=(".json", *PROGRAMS),
-        help="the language of the programs; default: the cell's first",
+        help="the extension of the programs; default: the first one of the cell's language",
     )
     batch.add_argument(
         "--jobs", metavar="N", type=values.jobs, help="the number of processes; default: one for each processor"
@@ -142,12 +142,12 @@ def add_compare(commands) -> None:
         "--at-least",
         metavar="OVERLAP",
         type=values.share,
-        help="exit with 1 if the paint overlaps the drawing by less than this",
+        help="exit with status 1 if the paint overlaps the drawing by less than this",
     )
     compare.add_argument(
         "--sheets",
         action="store_true",
-        help="report how well sheets repeat: each photograph shows another sheet, or one shows copies of the strokes",
+        help="report how well sheets repeat; each photograph shows another sheet, or one sheet has copies of strokes",
     )
     flags.add_report(compare)
     flags.add_write_options(compare)
@@ -186,7 +186,7 @@ def add_simulate_photo(commands) -> None:
         help="the errors to simulate (.toml); default: drawn at random by --seed, and printed",
     )
     simulate.add_argument(
-        "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
+        "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the brush of the plan"
     )
     simulate.add_argument(
         "--seed", metavar="N", type=values.count, default=1, help="the seed of the random errors; default: 1"
@@ -218,8 +218,8 @@ def add_preview(commands) -> None:
         "--show",
         choices=("paint", "toolpath", "strokes", "errors"),
         default="paint",
-        help="draw the paint; the paint and the path of the tool; the strokes read from the drawing; or missing and "
-        "surplus paint, with the report; default: paint",
+        help="draw the paint, the paint with the path of the tool, the strokes read from the drawing, or missing and "
+        "surplus paint with the report; default: paint",
     )
     flags.add_choices(preview, several_brushes=True)
     flags.add_speed(preview)
@@ -229,7 +229,7 @@ def add_preview(commands) -> None:
     preview.add_argument(
         "--editable",
         action="store_true",
-        help="with --show strokes: lines with a width, to go on drawing with (.svg)",
+        help="with --show strokes: write lines with a width, which you can edit (.svg)",
     )
     preview.add_argument(
         "--playback",
@@ -286,14 +286,16 @@ def _select_preview(args) -> str:
 def add_text(commands) -> None:
     text = commands.add_parser("text", help="write a text in a font as a drawing")
     text.add_argument(
-        "input", metavar="TEXT", help="what to write; \\n starts a line; a text that begins with - comes last, after --"
+        "input",
+        metavar="TEXT",
+        help="what to write; \\n starts a new line; put a text that begins with - last, after --",
     )
     flags.add_output(text, "a drawing (.svg)")
     text.add_argument(
         "--font",
         metavar="FILE",
         required=True,
-        help="an SVG font of single lines, the name of one of Inkscape's, or a TrueType or OpenType font",
+        help="a TrueType, OpenType or single-line SVG font, or the name of a single-line font of Inkscape",
     )
     text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="the size of the em; default: 20")
     text.add_argument(

@@ -14,18 +14,15 @@ TERMINALS = ("auto", "round", "butt", "pointed")
 PROGRAM_HELP = "a program; its extension names the language (see convert --help)"
 
 
-def list_program_formats() -> str:
-    """Return the extensions of programs, each with the language that it stands for."""
+def list_output_formats() -> str:
+    """Return the extensions of plans and programs, each with the language that it stands for."""
     titles: dict[str, str] = {}
     for post in POSTS.values():
         name = " ".join(post.extensions)
         # Languages that share an extension get the common part of their titles, as in: G-code for grbl.
         titles[name] = post.title.partition(" for ")[0] if name in titles else post.title
-    return " or ".join(f"{title} ({name})" for name, title in titles.items())
-
-
-def list_output_formats() -> str:
-    return f"a plan (.json) or {list_program_formats()}"
+    *formats, last_format = (f"{title} ({name})" for name, title in titles.items())
+    return f"{', '.join(['a plan (.json)', *formats])}, or {last_format}"
 
 
 def add_output(command: argparse.ArgumentParser, what: str, is_needed: bool = True) -> None:
@@ -101,8 +98,8 @@ def add_margin_strokes(command: argparse.ArgumentParser) -> None:
 
 
 def add_quiet(command: argparse.ArgumentParser) -> None:
-    is_report = any(action.dest == "json" for action in command._actions)
-    only = "warnings, and the report of --json, only" if is_report else "warnings only"
+    has_report = any(action.dest == "json" for action in command._actions)
+    only = "only warnings and the report of --json" if has_report else "warnings only"
     command.add_argument("--quiet", action="store_true", help=f"print {only}")
 
 
@@ -135,11 +132,16 @@ def add_input(command: argparse.ArgumentParser) -> None:
 
 def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False) -> None:
     add = command.add_argument
-    default = "default: round-6; for a plan, the brush it names"
+    text = "the brush; default: round-6, or the plan's"
     if several_brushes:
-        add("--brush", metavar="NAME|FILE", action="append", help=f"{default}; with --all-brushes any number")
+        add(
+            "--brush",
+            metavar="NAME|FILE",
+            action="append",
+            help=f"{text}; with --all-brushes, repeat it for more brushes",
+        )
     else:
-        add("--brush", metavar="NAME|FILE", help=default)
+        add("--brush", metavar="NAME|FILE", help=text)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     add_layout(command)
     add_stroke_choices(command)
@@ -165,7 +167,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         "--terminals",
         choices=TERMINALS,
         help="both ends of all strokes: round, butt (cut straight), pointed, or the best for each; default: auto; "
-        "with --compensation closed or refined",
+        "needs --compensation closed or refined",
     )
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
     add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")
@@ -190,13 +192,13 @@ def add_stroke_choices(command: argparse.ArgumentParser) -> None:
         "--colour",
         metavar="COLOUR",
         type=values.colour,
-        help="paint the strokes of this colour: #1a237e, red",
+        help="paint only strokes of this colour, such as #1a237e or red",
     )
     add_wide(command)
     add(
         "--corners",
         choices=("auto", "turn"),
-        help="at corners: turn the brush in place; default: auto, lift it where that is better",
+        help="at corners, turn the brush in place, or (auto) lift it where that is better; default: auto",
     )
     add(
         "--detail",
@@ -236,7 +238,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         "--sheet",
         metavar="WxH",
         type=values.sheet,
-        help="the sheet in mm, with units, or a2 to a5, letter; default: the drawing's",
+        help="the sheet: its size in mm or with units, a2 to a5, or letter; default: the drawing's",
     )
     add("--units", choices=("mm", "in"), help="the unit of a drawing that does not define it (DXF)")
     add(
@@ -255,7 +257,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
     add(
         "--background",
         choices=BACKGROUNDS,
-        help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
+        help="paint a white shape that covers the page (keep), or leave it out (auto); default: auto (SVG)",
     )
     add("--pen", choices=PENS, help="what lifts the pen in G-code: Z, or a servo (M3); default: detected")
     add(
@@ -288,7 +290,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         "--as",
         dest="paths_as",
         choices=("stroke", "outline"),
-        help="stroke: follow paths as lines, ignore fills; outline: paths outline shapes, ignore strokes; "
+        help="read paths as lines and ignore fills (stroke), or as outlines and ignore strokes (outline); "
         "default: as drawn",
     )
     size = command.add_mutually_exclusive_group()

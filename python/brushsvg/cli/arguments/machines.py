@@ -19,8 +19,8 @@ def _add_first_run(commands) -> None:
     first = commands.add_parser("first-run", help="write a safe first program for a new machine")
     first.add_argument("input", metavar="NAME", help="a shipped cell, or a cell.toml")
     flags.add_output(first, flags.PROGRAM_HELP)
-    first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
-    first.add_argument("--sheet", metavar="WxH", type=values.sheet, help="default: 200x100")
+    first.add_argument("--brush", metavar="NAME|FILE", help="the brush; default: round-6")
+    first.add_argument("--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: 200x100")
     flags.add_explain(first, None)
     flags.add_write_options(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
@@ -31,7 +31,7 @@ def _check_first_run(args) -> None:
 
 
 def _add_border(commands) -> None:
-    border = commands.add_parser("border", help="write a run around the job in the air, at safe height")
+    border = commands.add_parser("border", help="write a program that goes around the job in the air, at safe height")
     flags.add_input(border)
     flags.add_output(border, flags.PROGRAM_HELP)
     flags.add_choices(border)
@@ -47,11 +47,11 @@ def _check_border(args) -> None:
 
 
 def _add_height(commands) -> None:
-    height = commands.add_parser("height", help="write strokes that show how high the paper is")
+    height = commands.add_parser("height", help="write a program whose strokes show how high the paper is")
     flags.add_output(height, flags.PROGRAM_HELP)
-    height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    height.add_argument("--brush", metavar="NAME|FILE", help="the brush; default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
-    height.add_argument("--sheet", metavar="WxH", type=values.sheet, help="default: 200x100")
+    height.add_argument("--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: 200x100")
     height.add_argument(
         "--from",
         metavar="MM",
@@ -69,7 +69,11 @@ def _add_height(commands) -> None:
         help="height of the last stroke; default: -1",
     )
     height.add_argument(
-        "--step", metavar="MM", type=values.step, default=0.1, help="the height between two strokes; default: 0.1"
+        "--step",
+        metavar="MM",
+        type=values.step,
+        default=0.1,
+        help="the difference in height between two strokes; default: 0.1",
     )
     flags.add_explain(height, None)
     flags.add_write_options(height)
@@ -96,13 +100,18 @@ def add_check(commands) -> None:
     check = commands.add_parser("check", help="read a program back, simulate it, and compare it with its drawing")
     check.add_argument("program", metavar="PROGRAM", help=flags.PROGRAM_HELP)
     check.add_argument("input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint")
-    check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
-    check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
+    check.add_argument("--brush", metavar="NAME|FILE", help="the brush; default: the one that the program names")
+    check.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: the one that the program names")
     flags.add_layout(check)
     flags.add_stroke_choices(check)
     flags.add_speed(check)
     flags.add_corrections(check)
-    check.add_argument("--z-offset", metavar="MM", type=values.height, help="default: the one that the program names")
+    check.add_argument(
+        "--z-offset",
+        metavar="MM",
+        type=values.height,
+        help="how much higher the paper is than the cell says; default: as in the program",
+    )
     check.add_argument("--lenient", action="store_true", help="paint the undamaged part of damaged geometry")
     flags.add_picture(check, "what will be painted")
     flags.add_explain(check)
@@ -145,8 +154,8 @@ def add_cell(commands) -> None:
         metavar="X,Y,Z",
         action="append",
         type=values.point3,
-        help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
-        "left edge, and anywhere else on it, each just touching, in the robot's frame",
+        help="a point in the robot's frame where the tip just touches the sheet; give it three or four times: at the "
+        "lower left corner, on the lower edge, on the left edge, and anywhere else, in this order",
     )
     flags.add_write_options(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
@@ -158,7 +167,7 @@ def _add_cell_place(subcommands) -> None:
     place.add_argument("input", metavar="NAME", help="a shipped cell, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="the drawing to paint; default: the whole sheet")
     flags.add_output(place, "a picture of the table (.png .svg)", False)
-    place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
+    place.add_argument("--brush", metavar="NAME|FILE", help="the brush; default: round-6")
     flags.add_layout(place)
     flags.add_wide(place)
     flags.add_explain(place, "drawing")

@@ -18,15 +18,15 @@ def add_init(commands) -> None:
         default=NAME,
         help=f"where to write it; its name must be {NAME}; default: in the current folder",
     )
-    init.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: asks")
+    init.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: brushsvg asks")
     init.add_argument(
-        "--brush", metavar="NAME|FILE", help="the brush, or none if it is not measured yet; default: asks"
+        "--brush", metavar="NAME|FILE", help="the brush, or none if it is not measured yet; default: brushsvg asks"
     )
     init.add_argument(
         "--sheet",
         metavar="WxH",
         type=_check_sheet,
-        help=f"the paper: {', '.join(PAPERS_MM)}, or its size; default: asks",
+        help=f"the paper: {', '.join(PAPERS_MM)}, or its size; default: brushsvg asks",
     )
     flags.add_speed(init)
     flags.add_write_options(init)

@@ -116,5 +116,5 @@ POSTS = {  # by the language that a cell names
     ),
     "ebb": Post("commands for EBB boards (AxiDraw, NextDraw)", (".ebb",), "ebb.ebb", circles_by=""),
     "hpgl": Post("HP-GL for pen plotters", (".hpgl", ".plt"), "hpgl.hpgl", circles_by=""),
-    "robodk": Post("what a post of RoboDK's kind writes", (".robodk",), "robodk.robodk", False, "pose"),
+    "robodk": Post("the output of a RoboDK post", (".robodk",), "robodk.robodk", False, "pose"),
 }
