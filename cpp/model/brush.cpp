@@ -430,11 +430,13 @@ void check(const Brush& brush) {
                     "paint_depth_mm", paints, brush.depth_range_mm);
 }
 
+constexpr const char* kLawAssumed = "the law is assumed, not measured: calibrate the brush to measure it";
+
 std::vector<Warning> remarks(const Brush& brush) {
     std::vector<Warning> out;
     const auto [lo, hi] = brush.depth_range_mm;
     for (const auto& [profile, where] : laws(brush)) {
-        if (profile->assumed) out.push_back(Warning{"law-assumed", where, "the law is assumed, not measured"});
+        if (profile->assumed) out.push_back(Warning{"law-assumed", where, kLawAssumed});
         if (profile->calibrated_mm && ((*profile->calibrated_mm)[0] > lo || (*profile->calibrated_mm)[1] < hi))
             out.push_back(Warning{
                 "depth-not-measured", where,
@@ -443,7 +445,7 @@ std::vector<Warning> remarks(const Brush& brush) {
                             (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1], lo, hi)});
     }
     if (brush.paint && brush.paint->assumed)
-        out.push_back(Warning{"law-assumed", "paint", "the law is assumed, not measured"});
+        out.push_back(Warning{"law-assumed", "paint", kLawAssumed});
     if (!brush.is_rigid()) {
         bool falls = true, gap = true;
         for (int i = 1; i <= 200; ++i) {

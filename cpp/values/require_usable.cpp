@@ -73,11 +73,11 @@ void require_usable(const Brush& brush) {
     require_law(brush.tip_gap, lo, hi, false, "tip_gap");
     require_law(brush.tip_to_widest, lo, hi, false, "tip_to_widest");
     require_law(brush.half_width, lo, hi, true, "half_width");
-    if (!(std::abs(brush.paint_depth_mm) <= kMaxDepthMm))
+    if (!(brush.paint_depth_mm >= 0.0 && brush.paint_depth_mm <= kMaxDepthMm))
         throw Error("out-of-range",
-                    format_text("the painting depth is %.4g mm, outside the range [-%.0f, %.0f] mm",
-                                brush.paint_depth_mm, kMaxDepthMm, kMaxDepthMm),
-                    "paint_depth_mm", brush.paint_depth_mm);
+                    format_text("the painting depth is %.4g mm, outside the range [0, %.0f] mm", brush.paint_depth_mm,
+                                kMaxDepthMm),
+                    "paint_depth_mm", brush.paint_depth_mm, std::array<double, 2>{0.0, kMaxDepthMm});
     if (brush.footprints.dragged.empty())
         throw Error("footprint-invalid", "there is no outline, but at least one is needed", "footprints.dragged");
     const Eigen::Index vertices = brush.footprints.vertex_count();

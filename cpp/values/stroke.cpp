@@ -177,7 +177,10 @@ void check(const Stroke& stroke) {
     if (stroke.half_width.empty()) throw Error("stroke-empty", "the stroke has no width", stroke.id);
     double before = -1.0;
     for (const WidthKnot& knot : stroke.half_width) {
-        if (!(std::abs(knot.at) <= 1e6) || !(knot.half_width_mm >= 0.0 && knot.half_width_mm <= 1e6))
+        if (!(std::abs(knot.at) <= 1e6))
+            throw Error("out-of-range", "the place of a half width along the stroke is not finite or beyond 1e6",
+                        stroke.id, knot.at);
+        if (!(knot.half_width_mm >= 0.0 && knot.half_width_mm <= 1e6))
             throw Error("out-of-range", "the stroke has a half width that is negative, not finite or beyond 1e6 mm",
                         stroke.id, knot.half_width_mm);
         if (knot.at < before)

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "brushsvg/error.hpp"
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -106,4 +107,6 @@ TEST_CASE("a stroke without line or width, or with a bad number, is refused") {
     s.middle_mm = polyline({V(0, 0), V(1, 0)});
     s.half_width = {{0.5, 1.0}, {0.2, 1.0}};
     CHECK_THROWS_AS(check(s), Error);
+    s.half_width = {{2e6, 1.0}};
+    CHECK(agrees(refusal([&] { check(s); }), "out-of-range", "x", {"place"}));
 }

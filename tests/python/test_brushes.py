@@ -429,3 +429,13 @@ def test_a_law_refuses_depths_outside_the_brush_range(law):
         assert getattr(brush, law)(50) == value.extrapolated(50)
         alone = brushsvg.Profile(value.coefficients)
         assert alone.depth_range_mm is None and alone(50) == pytest.approx(alone.extrapolated(50))
+
+
+def test_a_negative_painting_depth_is_refused():
+    brush = find_brush("round-6")
+    stroke = _core.Stroke.from_points([(20, 20), (50, 20)], 4.0)
+    plan = _core.compensate([stroke], brush, None).plan
+    brush.paint_depth_mm = -5.0
+    with pytest.raises(Error, match="painting depth") as refusal:
+        _core.simulate(plan, brush)
+    assert (refusal.value.value, refusal.value.range) == (-5.0, (0.0, 1000.0))
