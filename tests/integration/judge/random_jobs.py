@@ -129,10 +129,10 @@ def judged(
 def _parts(program: Path) -> list[Path]:
     """Return the files in which a long program continues.
 
-    The files of a Fanuc have names of eight letters and digits.
+    The files of a Fanuc and a KUKA have names of eight letters and digits.
     """
-    if program.suffix == ".ls":
-        return sorted(program.parent.glob("[A-Z]*[0-9][0-9][0-9].ls"))
+    if program.suffix in (".ls", ".src"):
+        return sorted(program.parent.glob(f"[A-Z]*[0-9][0-9][0-9]{program.suffix}"))
     found = program.parent.glob(f"{program.stem}-part*{program.suffix}")
     return sorted(found, key=lambda path: int(path.stem.rpartition("part")[2]))
 
