@@ -397,7 +397,21 @@ def test_rounding_leaves_no_steep_path(name):
         poses = np.column_stack([40 + np.cumsum([(0, 0), *ways_mm], axis=0), np.minimum(heights_mm, 0.0)])
         written = as_written(_core.Pass("s", poses, 20.0), cell, np.eye(4))
         ways = np.diff(written.poses_mm, axis=0)
-        steep = is_too_steep_for_servo(ways, 20.0, cell, are_rounded=True)
+        steep = is_too_steep_for_servo(ways, 20.0, cell, were_read=True)
         assert not steep.any(), (poses[:-1][:3], ways[steep])
         written_ways += len(ways)
     assert written_ways > 2000
+
+
+def test_a_path_that_is_not_too_steep_is_not_divided_after_rounding():
+    """The program would go elsewhere than planned: level first, and then up on the spot."""
+    cell, random, gentle = find_cell("axidraw-ebb"), np.random.default_rng(7), 0
+    for _ in range(3000):
+        length_mm, angle = random.uniform(0.06, 0.2), random.uniform(0, 2 * np.pi)
+        places = np.cumsum([(40, 30), (6, 0), (length_mm * np.cos(angle), length_mm * np.sin(angle)), (0, 6)], axis=0)
+        poses = np.column_stack([places, (-3.0, -5.0, random.uniform(-4.9, -4.2), -3.0)])
+        if is_too_steep_for_servo(np.diff(poses, axis=0), 20.0, cell).any():
+            continue
+        gentle += 1
+        assert len(as_written(_core.Pass("s", poses, 20.0), cell, np.eye(4)).poses_mm) == len(poses)
+    assert gentle > 1000

@@ -465,7 +465,9 @@ def ends_rounded_mm(cell: Cell) -> float:
     return 2**0.5 * unit_mm(cell)
 
 
-def is_too_steep_for_servo(ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False) -> np.ndarray:
+def is_too_steep_for_servo(
+    ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False, were_read: bool = False
+) -> np.ndarray:
     """Return which straight paths are too steep for a moving servo, (n,).
 
     A path is too steep in three cases:
@@ -475,14 +477,17 @@ def is_too_steep_for_servo(ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, a
     - The feed, slowed down for the servo, would be below the lowest feed of the firmware.
 
     ways_mm: (n, 3) displacement of each path [mm].
-    are_rounded: whether the paths were read from a program. Rounding may have made them steeper than planned, and
-    the limits allow for that.
+    are_rounded: whether the paths have the rounded ends of a program. Rounding may have made them steeper than
+    planned, and the limits allow for that.
+    were_read: whether they were also read from a program, in which each may be a part of a longer path.
     """
     rises_mm = np.abs(ways_mm[:, 2])
     flat_mm, length_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]), np.linalg.norm(ways_mm, axis=1)
-    # the smallest number of parts that is written, or the largest number that may have been read
-    parts = servo_parts(ways_mm, cell, ends_rounded_mm(cell) if are_rounded else -ends_rounded_mm(cell))
-    if are_rounded:
+    # the smallest number of parts that rounding may leave, the number that is written, or the largest one that may
+    # have been read
+    longer_mm = ends_rounded_mm(cell) if were_read else 0.0 if are_rounded else -ends_rounded_mm(cell)
+    parts = servo_parts(ways_mm, cell, longer_mm)
+    if are_rounded or were_read:
         rises_mm, flat_mm = np.maximum(rises_mm - value_mm(cell), 0.0), flat_mm + ends_rounded_mm(cell)
         length_mm = np.hypot(flat_mm, rises_mm)
     min_speed_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SERVO_SPEED_MM_S)
