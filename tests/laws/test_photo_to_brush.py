@@ -25,10 +25,12 @@ import brushsvg  # noqa: E402
 from brushsvg import find_brush  # noqa: E402
 from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
+from brushsvg.calibration.chart.photograph import read_chart_photos  # noqa: E402
 from brushsvg.calibration.marks.from_marks import refuse_many  # noqa: E402
 from brushsvg.calibration.marks.sheet_scale import SheetScale  # noqa: E402
 from brushsvg.calibration.marks.stray_marks import find_strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
+from brushsvg.geometry.polylines import length  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402
 from brushsvg.reporting.report_text import GOOD  # noqa: E402
 
@@ -284,3 +286,31 @@ def test_the_table_around_small_paper_is_not_a_mark(tmp_path, capsys):
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and are_reported([reported[-1][1]], "marks-scaled smaller bar"), reported
     assert in_json(capsys, *words, "--bar", f"{1.03 * printed().bar.length_mm:.1f}")[0] == 0
+
+
+@pytest.mark.parametrize("colour", [BLUE, INK], ids=["blue", "black"])
+def test_a_mark_on_a_printed_label_is_read_without_its_letters(colour):
+    """Marks that are 1.7 mm too low touch labels.
+
+    A mark inside the box of its label was once no paint, and letters that touch a mark were part of its outline. The
+    label of a stroke that was not painted is no paint either.
+    """
+    brush = find_brush("round-6")
+    made = chart(brush, (210.0, 297.0), "few")
+    painted = core.simulate(made.plan, brush)
+    core.trace_outlines(painted, brush)
+    unpainted = "arc-2"
+    found = []
+    for labels in (made.labels, ()):
+        sheet = photograph.page(replace(made, labels=labels))
+        for mark in painted.passes:
+            if mark.stroke != unpainted:
+                sheet.paint([np.array(ring) + np.array([0.6, -1.7]) for ring in mark.outline_mm], colour)
+        photo = photograph.photograph(sheet, Camera(size_px=(2000, 2800)))
+        found.append(read_chart_photos(replace(made, labels=labels), [("photo.jpg", photo)]).marks)
+    with_labels, without = found
+    assert with_labels.missing == without.missing == [unpainted]
+    for stroke, rings in with_labels.outlines_mm.items():
+        true_rings = without.outlines_mm[stroke]
+        growth_mm = (core.area(rings) - core.area(true_rings)) / sum(map(length, true_rings))
+        assert abs(growth_mm) < 0.02, (stroke, growth_mm)

@@ -240,7 +240,7 @@ def test_a_mark_displaced_into_the_next_box_stays_whole():
     for ring in target.values():
         (left, bottom), (right, top) = np.int32(ring.min(axis=0) * fine), np.int32(ring.max(axis=0) * fine)
         paint[len(paint) - top : len(paint) - bottom, left:right] = 1
-    found = assign_marks(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), stroke_boxes, [])
+    found = assign_marks(paint, Flat(np.zeros((*paint.shape, 3), np.uint8), fine, sheet_mm), stroke_boxes)
     assert not found.joined and not found.missing
     for name, ring in target.items():
         assert _core.overlap(found.outlines_mm[name], [ring]) > 0.9, name

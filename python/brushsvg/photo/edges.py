@@ -21,6 +21,7 @@ MAX_PAINT_WIDTH_MM = 31  # a darker area that is narrower than this is paint; a 
 MIN_BARE_LIGHT_RATIO = 0.92  # of the surrounding light: a darker pixel is not bare paper
 # Distance over which the light may change. If shorter, the light would follow the stain around wet paint.
 LIGHT_SMOOTHING_MM = 8.0
+LABEL_MARGIN_MM = 0.5  # distance from the box of a label within which letters or their blur may be
 MAX_STRAY_MM = 6.0  # greatest distance of a mark from its box
 MIN_CONTRAST = 0.12  # smallest share of the light that paint absorbs
 MIN_CONTRAST_TO_NOISE = 6.0  # smallest contrast of paint, in standard deviations of the paper's noise
@@ -58,12 +59,12 @@ def find_marks(flat: Flat, stroke_boxes: list[StrokeBox], printed_mm: list[np.nd
     """Find the marks of the strokes on a flattened sheet.
 
     printed_mm: rings around markers and everything printed as dark as paint; labels_mm: boxes of pale text, which a
-    mark may cover. Raises Error where there is no paint.
+    mark may cover or touch. Raises Error where there is no paint.
     """
     is_printed = printed_pixels(flat, printed_mm)
     try:
         paint = paint_seen(flat, is_printed, stroke_boxes, labels_mm)
-        return assign_marks(paint, flat, stroke_boxes, labels_mm)
+        return assign_marks(paint, flat, stroke_boxes)
     except Error:
         refuse_grainy(grey_light(flat.pixels), "the strokes cannot be distinguished")
         raise
@@ -82,28 +83,58 @@ def paint_seen(flat: Flat, is_printed: np.ndarray, stroke_boxes: list[StrokeBox]
 
     The amount (rows, columns) is measured along the colour that best separates paint from paper, relative to the light
     that bare paper would reflect at the same place. Paint may be darker or lighter than paper. is_printed: mask (rows,
-    columns) of pixels that do not count; labels_mm: boxes that do not count as bare paper.
+    columns) of pixels that do not count; labels_mm: boxes of print that does not count as bare paper or as paint.
     """
     light = cv2.LUT(flat.pixels, LIGHT)
-    printed = is_printed.copy()
+    is_label = np.zeros_like(is_printed)
     for box in labels_mm:
-        c0, r0, c1, r1 = box_pixels(flat, box, 0.5)
-        printed[r0:r1, c0:c1] = 1
+        _fill_box(is_label, flat, box, LABEL_MARGIN_MM)
+    printed = is_printed | is_label
     paper, is_lighter = _estimate_paper_light(light, printed, flat.px_per_mm)
     absorbed = 1.0 - light / np.maximum(paper, 1e-3)
     if is_lighter:
         absorbed = -absorbed
     inside = np.zeros_like(is_printed)
     for stroke_box in stroke_boxes:
-        c0, r0, c1, r1 = box_pixels(flat, stroke_box.box_mm, 0.0)
-        inside[r0:r1, c0:c1] = 1
+        _fill_box(inside, flat, stroke_box.box_mm, 0.0)
     sample = absorbed[::3, ::3][(inside[::3, ::3] == 1) & (is_printed[::3, ::3] == 0)]
     weights = _paint_weights(sample)
     paint = cv2.transform(absorbed, weights[None])
+    if len(labels_mm):
+        letters = _letters_without_paint(absorbed, paint, flat, stroke_boxes, labels_mm)
+        weights = _paint_weights(sample, letters)
+        on_label = absorbed[is_label == 1] @ weights
+        is_print = on_label <= (letters @ weights).max()
+        paint[is_label == 1] = np.where(is_print, 0.0, np.minimum(paint[is_label == 1], on_label))
     paint[is_printed == 1] = 0.0
     rim_px = _rim_px(flat)
     paint[:rim_px] = paint[-rim_px:] = paint[:, :rim_px] = paint[:, -rim_px:] = 0.0
     return paint
+
+
+def _fill_box(mask: np.ndarray, flat: Flat, box_mm, beyond_mm: float) -> None:
+    c0, r0, c1, r1 = box_pixels(flat, box_mm, beyond_mm)
+    mask[r0:r1, c0:c1] = 1
+
+
+def _letters_without_paint(absorbed, paint, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm) -> np.ndarray:
+    """Return the absorbed shares (n, 3) of the light in the box of a label without paint.
+
+    It is the palest label that no mark can reach, because an object may cover the others. Where marks can reach all
+    labels, it is the palest of all. The shares are 0 where no label is on the sheet.
+    """
+    strokes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])
+    found = []
+    for box in labels_mm:
+        c0, r0, c1, r1 = box_pixels(flat, box, LABEL_MARGIN_MM)
+        if r0 < r1 and c0 < c1:
+            gaps_mm = np.maximum(strokes[:, :2] - box[2:], box[:2] - strokes[:, 2:]).max(axis=1)
+            window = slice(r0, r1), slice(c0, c1)
+            found.append((gaps_mm.min() <= MAX_STRAY_MM, float(paint[window].max()), window))
+    if not found:
+        return np.zeros((1, 3), np.float32)
+    _, _, window = min(found, key=lambda each: each[:2])
+    return absorbed[window].reshape(-1, 3)
 
 
 def _rim_px(flat: Flat) -> int:
@@ -148,11 +179,12 @@ def _is_paint_lighter(coarse: np.ndarray, is_covered: np.ndarray) -> bool:
     return int(lighter.sum()) > int(darker.sum())
 
 
-def _paint_weights(absorbed: np.ndarray) -> np.ndarray:
+def _paint_weights(absorbed: np.ndarray, letters: np.ndarray | None = None) -> np.ndarray:
     """Return colour weights (3,) that map paint to 1 and paper to 0.
 
     With these weights, noise is smallest. This is Fisher's linear discriminant. absorbed: (n, 3) absorbed shares of the
-    light. Raises Error where paint and paper cannot be separated.
+    light; letters: (m, 3) of print and the paper around it, which count as noise of the paper. Raises Error where paint
+    and paper cannot be separated.
     """
     strength = np.linalg.norm(np.maximum(absorbed, 0.0), axis=1) / np.sqrt(3)
     threshold, _ = cv2.threshold(
@@ -168,6 +200,8 @@ def _paint_weights(absorbed: np.ndarray) -> np.ndarray:
         raise Error(NO_PAINT_MESSAGE, code="photo-without-paint")
     bare = paper[(np.abs(paper - paper_median) < 4 * noise + 1e-3).all(axis=1)]
     spread = np.cov(bare, rowvar=False) + 0.02**2 * np.eye(3)
+    if letters is not None:
+        spread += (letters - paper_median).T @ (letters - paper_median) / len(letters)
     weights = np.linalg.solve(spread, paint - paper_median)
     return weights / (weights @ (paint - paper_median))
 
@@ -201,7 +235,7 @@ def _number_nearest_boxes(flat: Flat, stroke_boxes: list[StrokeBox]) -> np.ndarr
     return np.repeat(np.repeat(owner, step, axis=0), step, axis=1)[:rows, :columns]
 
 
-def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
+def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> Marks:
     """Assign each piece of paint to the stroke whose box holds most of it.
 
     Where marks are in the boxes of other strokes, as with a leaning tool or a displaced sheet, the boxes are moved
@@ -209,7 +243,7 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
     paint: from paint_seen, or a mean over several pictures.
     """
     try:
-        marks = _assign_marks_once(paint, flat, stroke_boxes, labels_mm)
+        marks = _assign_marks_once(paint, flat, stroke_boxes)
     except Error as refusal:
         if refusal.code != "photo-paint-elsewhere":
             raise
@@ -217,12 +251,12 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
         if moved_boxes is None:
             raise
         try:
-            return _assign_marks_once(paint, flat, moved_boxes, labels_mm)
+            return _assign_marks_once(paint, flat, moved_boxes)
         except Error:
             raise refusal from None
     if (marks.joined or marks.missing) and (moved_boxes := _move_boxes_to_paint(paint, flat, stroke_boxes)) is not None:
         with contextlib.suppress(Error):
-            retried = _assign_marks_once(paint, flat, moved_boxes, labels_mm)
+            retried = _assign_marks_once(paint, flat, moved_boxes)
             if len(retried.joined) + len(retried.missing) < len(marks.joined) + len(marks.missing):
                 return retried
     return marks
@@ -276,7 +310,7 @@ def _move_boxes_to_paint(paint: np.ndarray, flat: Flat, stroke_boxes: list[Strok
     ]
 
 
-def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
+def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> Marks:
     px_per_mm = flat.px_per_mm
     count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
     owner = _number_nearest_boxes(flat, stroke_boxes)
@@ -284,12 +318,7 @@ def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeB
     pairs_of_numbers = part.ravel()[painted_px].astype(np.int64) * (len(stroke_boxes) + 1) + owner.ravel()[painted_px]
     areas_in_boxes = np.bincount(pairs_of_numbers, minlength=count * (len(stroke_boxes) + 1)).reshape(count, -1)
     areas = stats[:, cv2.CC_STAT_AREA].astype(float)
-    is_text = np.zeros(part.shape, bool)
-    for box in labels_mm:
-        c0, r0, c1, r1 = box_pixels(flat, box, 0.2)
-        is_text[r0:r1, c0:c1] = True
-    text_areas = np.bincount(part[is_text], minlength=count)
-    is_kept = (areas > 0.5 * MIN_PART_MM2 * px_per_mm**2) & (text_areas < 0.7 * areas)
+    is_kept = areas > 0.5 * MIN_PART_MM2 * px_per_mm**2
     is_kept[0] = False
     is_kept &= ~_is_along_rim(part, count, _rim_px(flat))
     own_box = areas_in_boxes[:, 1:].argmax(axis=1) + 1

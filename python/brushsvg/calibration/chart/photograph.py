@@ -120,9 +120,7 @@ def read_chart_photos(
             ) from None
     if len(reads) == 1:
         return reads[0]
-    marks = assign_marks(
-        np.mean([read.marks.paint for read in reads], axis=0), reads[0].flat, stroke_boxes, page.labels
-    )
+    marks = assign_marks(np.mean([read.marks.paint for read in reads], axis=0), reads[0].flat, stroke_boxes)
     for (name, _), read in zip(photos, reads, strict=True):
         _refuse_another_sheet(read.marks, marks, name)
     worst = max((read.view for read in reads), key=lambda view: view.residual_mm)
