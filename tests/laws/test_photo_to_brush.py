@@ -79,7 +79,7 @@ def desk(tmp_path_factory):
 
 def test_python_and_the_command_give_the_same_brush(desk, tmp_path, capsys):
     photo, printed_chart, out = desk / "photo.jpg", desk / "chart.json", tmp_path / "own.json"
-    assert main(["calibrate", str(photo), "--chart", str(printed_chart), "-o", str(out), "--quiet"]) == 0
+    assert main(["calibrate", str(photo), "--chart", str(printed_chart), "-o", str(out)]) == 0
     made = brushsvg.calibrate(photo, "own", chart=printed_chart)
     assert core.write_brush(made.brush) == out.read_text()
     assert made.text == capsys.readouterr().out

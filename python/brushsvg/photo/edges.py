@@ -26,6 +26,9 @@ MAX_STRAY_MM = 6.0  # greatest distance of a mark from its box
 MIN_CONTRAST = 0.12  # smallest share of the light that paint absorbs
 MIN_CONTRAST_TO_NOISE = 6.0  # smallest contrast of paint, in standard deviations of the paper's noise
 SEEN = 0.3  # of the usual paint: a pixel with more is part of a mark; each mark's edge has its own level
+# Share of the distance that a shift leaves, below which the marks are on a page of another scale: 0.98 where they are
+# not, 0.63 to 0.82 at 3 %.
+MAX_SCALED_SHARE = 0.9
 MAX_LEAN_MM_PER_MM = 1.5  # displacement per depth of a leaning tool, with the same limit as in a cell
 MAX_MISSING_SHARE = 0.5  # of the strokes
 MIN_PART_MM2 = 0.5
@@ -266,7 +269,8 @@ def _move_boxes_to_paint(paint: np.ndarray, flat: Flat, stroke_boxes: list[Strok
     """Move the boxes so that their middles match most parts of the paint.
 
     They move in proportion to depth, as with a leaning tool, or all by one shift, as on a displaced sheet, whichever
-    fits better. Returns None where no depth is known, and where the shift exceeds MAX_STRAY_MM.
+    fits better. Returns None where no depth is known, where the shift exceeds MAX_STRAY_MM, and where the page
+    seems to have another scale.
     """
     depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
@@ -280,15 +284,16 @@ def _move_boxes_to_paint(paint: np.ndarray, flat: Flat, stroke_boxes: list[Strok
     size_differences = size[:, None] - (boxes[:, 2:] - boxes[:, :2])
     offsets = middle[:, None] - 0.5 * (boxes[:, :2] + boxes[:, 2:])
 
-    def fit_boxes(by: np.ndarray) -> tuple[float, np.ndarray]:
+    def fit_boxes(by: np.ndarray, after_mm: np.ndarray | float = 0.0) -> tuple[float, np.ndarray]:
         """Fit the factors (2,) by which boxes move, and return the distance left.
 
         The distance is the smallest total distance of the parts from boxes. The boxes move by the factors times `by`
-        (boxes,). The factors are at most MAX_LEAN_MM_PER_MM.
+        (boxes, 1 or 2), and by after_mm. The factors are at most MAX_LEAN_MM_PER_MM.
         """
 
         def total_distance_mm(factors) -> float:
-            distances = np.linalg.norm(np.dstack([offsets - np.outer(by, factors), 0.5 * size_differences]), axis=2)
+            away = offsets - (by * factors + after_mm)
+            distances = np.linalg.norm(np.dstack([away, 0.5 * size_differences]), axis=2)
             return float(np.minimum(distances.min(axis=1), MAX_STRAY_MM).sum())
 
         factors, reach = np.zeros(2), MAX_LEAN_MM_PER_MM
@@ -298,13 +303,18 @@ def _move_boxes_to_paint(paint: np.ndarray, flat: Flat, stroke_boxes: list[Strok
             reach /= 10
         return total_distance_mm(factors), factors
 
-    everywhere = np.full(len(depths), depths.max())
-    (lean_distance_mm, lean), (shift_distance_mm, shift) = fit_boxes(depths), fit_boxes(everywhere)
+    by = depths[:, None]
+    everywhere = np.full_like(by, depths.max())
+    (lean_distance_mm, factors), (shift_distance_mm, shift) = fit_boxes(by), fit_boxes(everywhere)
     if shift_distance_mm < lean_distance_mm:
-        if np.hypot(*(depths.max() * shift)) > MAX_STRAY_MM:
+        by, factors = everywhere, shift
+        from_middle = 0.5 * (boxes[:, :2] + boxes[:, 2:])
+        from_middle -= from_middle.mean(axis=0)
+        from_middle *= MAX_STRAY_MM / MAX_LEAN_MM_PER_MM / np.abs(from_middle).max()
+        is_scaled = fit_boxes(from_middle, by * factors)[0] < MAX_SCALED_SHARE * shift_distance_mm
+        if is_scaled or np.hypot(*(by[0] * factors)) > MAX_STRAY_MM:
             return None
-        depths, lean = everywhere, shift
-    moved = boxes + np.outer(depths, np.tile(lean, 2))
+    moved = boxes + np.tile(by * factors, 2)
     return [
         replace(stroke_box, box_mm=tuple(box)) for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
     ]
