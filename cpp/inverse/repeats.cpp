@@ -45,8 +45,7 @@ std::vector<Original> find_originals(const std::vector<Points>& points_mm,
 std::vector<Original> find_originals(const std::vector<Stroke>& strokes) {
     std::vector<Points> points_mm;
     for (const Stroke& stroke : strokes) points_mm.push_back(points_of(stroke));
-    return find_originals(points_mm,
-                          [&](std::size_t k, std::size_t j) { return are_alike(strokes[k], strokes[j]); });
+    return find_originals(points_mm, [&](std::size_t k, std::size_t j) { return are_alike(strokes[k], strokes[j]); });
 }
 
 Points joined(const Rings& lists) {

@@ -23,8 +23,8 @@ using Points = Ring;
 
 /// Find the original of each thing; the first of its kind is its own.
 ///
-/// `points_mm`: the points of each thing. A thing without finite points has no equal. `are_alike(k, j)`: whether the things k and j are equal apart
-/// from their points.
+/// `points_mm`: the points of each thing. A thing without finite points has no equal. `are_alike(k, j)`: whether the
+/// things k and j are equal apart from their points.
 std::vector<Original> find_originals(const std::vector<Points>& points_mm,
                                      const std::function<bool(std::size_t, std::size_t)>& are_alike);
 

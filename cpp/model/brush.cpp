@@ -444,8 +444,7 @@ std::vector<Warning> remarks(const Brush& brush) {
                             "to %.2f mm",
                             (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1], lo, hi)});
     }
-    if (brush.paint && brush.paint->assumed)
-        out.push_back(Warning{"law-assumed", "paint", kLawAssumed});
+    if (brush.paint && brush.paint->assumed) out.push_back(Warning{"law-assumed", "paint", kLawAssumed});
     if (!brush.is_rigid()) {
         bool falls = true, gap = true;
         for (int i = 1; i <= 200; ++i) {

@@ -175,8 +175,7 @@ std::vector<double> as_moving_average(const std::vector<double>& autocovariance)
     for (int frequency = 0; frequency < kFrequencies; ++frequency) {
         const auto at = [&](int lag) { return cosine[std::size_t(frequency * std::abs(lag) % kFrequencies)]; };
         double power = 0.0;
-        for (int lag = 0; lag < lags; ++lag)
-            power += (lag ? 2.0 : 1.0) * autocovariance[std::size_t(lag)] * at(lag);
+        for (int lag = 0; lag < lags; ++lag) power += (lag ? 2.0 : 1.0) * autocovariance[std::size_t(lag)] * at(lag);
         const double amplitude = std::sqrt(std::max(0.0, power)) / kFrequencies;
         for (int lag = 1 - lags; lag < lags; ++lag) weights[std::size_t(lag + lags - 1)] += amplitude * at(lag);
     }
