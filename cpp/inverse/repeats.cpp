@@ -14,22 +14,36 @@ using Eigen::Vector2d;
 // Largest difference of equal coordinates [mm]. Regions have them on a grid of 1e-5 mm, programs round them to 1e-3 mm.
 constexpr double kEqualMm = 1e-4;
 
+/// A number that is the same for equal points, and differs for nearly all others.
+struct Signature {
+    double mm;
+    double tolerance_mm;  ///< how much it differs for points that count as equal
+};
+Signature signature_of(const Points& points) {
+    Signature out{0.0, 0.0};
+    const Eigen::RowVector2d middle = points.colwise().mean();
+    for (Index k = 0; k < points.rows(); ++k) {
+        const Vector2d weights(std::cos(1.4 * double(k)), std::sin(1.7 * double(k) + 1.0));  // without a pattern
+        out.mm += (points.row(k) - middle).dot(weights);
+        out.tolerance_mm += kEqualMm * weights.lpNorm<1>();
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<Original> find_originals(const std::vector<Points>& points_mm,
                                      const std::function<bool(std::size_t, std::size_t)>& are_alike) {
     std::vector<Original> out;
-    std::map<Index, std::multimap<double, std::size_t>> originals;  // by the number of points and their spread
+    std::map<Index, std::multimap<double, std::size_t>> originals;  // by the number of points and their signature
     for (std::size_t k = 0; k < points_mm.size(); ++k) {
         out.push_back({k, Vector2d::Zero()});
         const Points& points = points_mm[k];
         if (points.rows() == 0 || !points.allFinite()) continue;  // refused where it is used
-        const Eigen::RowVector2d middle = points.colwise().mean();
-        const double spread_mm = (points.rowwise() - middle).norm();
-        const double largest_mm = kEqualMm * std::sqrt(double(points.size()));
+        const Signature signature = signature_of(points);
         auto& some = originals[points.rows()];
-        for (auto each = some.lower_bound(spread_mm - largest_mm);
-             each != some.end() && each->first <= spread_mm + largest_mm; ++each) {
+        for (auto each = some.lower_bound(signature.mm - signature.tolerance_mm);
+             each != some.end() && each->first <= signature.mm + signature.tolerance_mm; ++each) {
             const Points displacements_mm = points - points_mm[each->second];
             const Eigen::RowVector2d mean = displacements_mm.colwise().mean();
             if ((displacements_mm.rowwise() - mean).cwiseAbs().maxCoeff() > kEqualMm || !are_alike(k, each->second))
@@ -37,7 +51,7 @@ std::vector<Original> find_originals(const std::vector<Points>& points_mm,
             out.back() = {each->second, mean.transpose()};
             break;
         }
-        if (out.back().index == k) some.emplace(spread_mm, k);
+        if (out.back().index == k) some.emplace(signature.mm, k);
     }
     return out;
 }
