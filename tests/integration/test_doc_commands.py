@@ -221,3 +221,8 @@ def test_a_block_of_commands_on_a_page_runs(block, tmp_path):
                 pattern = f"{path.stem}-*{path.suffix}" if f"-o {name}" in line and "--per-colour" in line else name
                 written = [*desk.folder.glob(pattern)]
                 assert written and all(file.stat().st_size > 0 for file in written), line
+            if edit := re.search(r"-o (\S+) .*# in the file, set (\w+) = (\S+)", line):
+                file = desk.folder / edit[1]
+                text, count = re.subn(rf"(?m)^{edit[2]} = \S+", f"{edit[2]} = {edit[3]}", file.read_text())
+                assert count == 1, line
+                file.write_text(text)
