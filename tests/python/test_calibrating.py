@@ -29,7 +29,7 @@ def table(tmp_path):
 
 def test_python_and_the_command_give_equal_bytes_and_reports(table, tmp_path, capsys):
     out = tmp_path / "brush.json"
-    assert main(["calibrate", str(table), "-o", str(out), "--quiet"]) == 0
+    assert main(["calibrate", str(table), "-o", str(out)]) == 0
     printed = capsys.readouterr().out
     made = brushsvg.calibrate(table, "brush")
     assert isinstance(made, brushsvg.BrushCalibration)
