@@ -156,7 +156,10 @@ passes: (whether the pass is from the other plan, its index there) for each pass
             if (method != "refined") originals = find_originals(strokes);
             const auto is_original = [&](std::size_t i) { return originals.empty() || originals[i].index == i; };
             run_in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) {
-                if (is_original(i)) done[i] = compensate_one(strokes[i]);
+                if (is_original(i))
+                    done[i] = compensate_one(strokes[i]);
+                else
+                    check(strokes[i]);
             });
             for (std::size_t i = 0; i < strokes.size(); ++i)
                 if (!is_original(i))

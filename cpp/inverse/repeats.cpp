@@ -93,8 +93,8 @@ bool are_alike(const Stroke& a, const Stroke& b) {
         a.half_width.size() != b.half_width.size() || !are_alike(a.target_mm, b.target_mm))
         return false;
     for (std::size_t k = 0; k < a.half_width.size(); ++k)
-        if (std::abs(a.half_width[k].at - b.half_width[k].at) > 1e-9 ||
-            std::abs(a.half_width[k].half_width_mm - b.half_width[k].half_width_mm) > kEqualMm)
+        if (!(std::abs(a.half_width[k].at - b.half_width[k].at) <= 1e-9) ||
+            !(std::abs(a.half_width[k].half_width_mm - b.half_width[k].half_width_mm) <= kEqualMm))
             return false;
     return true;
 }

@@ -526,7 +526,7 @@ class Search {
 
 bool are_alike(const Pass& a, const Pass& b) {
     return a.poses_mm.rows() == b.poses_mm.rows() && a.poses_mm.col(2).isApprox(b.poses_mm.col(2)) &&
-           a.tool_axes == b.tool_axes;
+           a.arcs.size() == b.arcs.size() && a.tool_axes == b.tool_axes;
 }
 
 bool are_alike(const PaintedShape& a, const PaintedShape& b) {

@@ -8,6 +8,7 @@ import pytest
 import shapely
 
 from brushsvg import _core, find_brush
+from brushsvg.errors import Error
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
@@ -230,6 +231,20 @@ def test_equal_strokes_are_compensated_once_and_keep_their_names_and_places():
     assert (str(two.stroke), two.colour, two.layer, two.settings.order) == ("again", "#ff0000", "top", 3)
     assert three.poses_mm[:, 2].min() < one.poses_mm[:, 2].min() - 0.5
     assert two.poses_mm == pytest.approx(_core.compensate([again], brush, None).plan.passes[0].poses_mm, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("place_mm", "width_mm"), [((2e6, 20), 2.0), ((20, 50), float("nan")), ((20, 50), -2.0)], ids=str
+)
+def test_an_invalid_copy_of_a_stroke_is_refused(place_mm, width_mm):
+    line = np.array([(0, 0), (10, 0)] * 2).ravel() * 1.0
+    strokes = [
+        _core.Stroke(id=name, middle_mm=[line + np.tile(place, 4)], half_width=[(0.0, width)])
+        for name, place, width in (("first", (20, 20), 2.0), ("copy", place_mm, width_mm))
+    ]
+    with pytest.raises(Error) as refusal:
+        _core.compensate(strokes, find_brush("round-6"), None)
+    assert refusal.value.where == "copy"
 
 
 def test_a_refined_stroke_near_the_edge_of_the_sheet_differs_from_one_in_the_middle():
