@@ -373,3 +373,14 @@ def test_check_accepts_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, t
     assert status == 0, reported
     status, _, reported = call(capsys, "check", str(program), "--cell", cell)
     assert status == 0, reported
+
+
+def test_tiny_steps_after_a_landing_on_leaning_paper_are_read_as_written():
+    """A reader makes the landing straight. Moving its deeper end would change the first step along the stroke."""
+    chance = random.Random("landings on leaning paper")
+    cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (0.0, 0.9, 16.0)))
+    for _ in range(20):
+        x, y, turn = chance.uniform(20, 40), chance.uniform(20, 40), chance.uniform(0, 2 * np.pi)
+        steps = [(k * 0.0023 * np.cos(turn), k * 0.0023 * np.sin(turn)) for k in range(5)]
+        near = [(x + dx, y + dy, -3.0) for dx, dy in steps]
+        assert found_by_check([(x, y, 0.0), *near, (x + 5, y + 5, -3.0), (x + 5, y + 5, 0.0)], [], cell)[1] is None

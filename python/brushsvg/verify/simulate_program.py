@@ -414,7 +414,12 @@ def _touch_to_pass(section: ReadSection, track: Track, on: slice, cell: Cell, le
         sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
         slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
         rises = np.abs(np.diff(poses[:, 2])) > least_move_mm(cell)
-        for k in np.flatnonzero(slower & rises & (sideways < 2 * unit_mm(cell))):
+        straight = np.flatnonzero(slower & rises & (sideways < 2 * unit_mm(cell)))
+        falls = poses[straight + 1, 2] < poses[straight, 2]
+        # The deeper pose keeps its place, and so its distance from the next pose along the stroke.
+        for k in straight[falls][::-1]:
+            poses[k, :2] = poses[k + 1, :2]
+        for k in straight[~falls]:
             poses[k + 1, :2] = poses[k, :2]
     arcs = _arcs_of_touch(owner, track.centres)
     for first, last in _connected_arcs(arcs):  # connected arcs have one depth, except for rounding
