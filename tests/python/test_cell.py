@@ -64,7 +64,7 @@ def test_every_shipped_cell_loads_and_equals_the_output_of_the_tool(name):
         (
             "margin_mm = 30.0",
             "margin_mm = 3\nbox_mm = [[0, 0, 0], [1, 1]]",
-            "workspace.box_mm",
+            "workspace.box_mm[1]",
             "wrong-type 3",
         ),
         (
@@ -74,7 +74,7 @@ def test_every_shipped_cell_loads_and_equals_the_output_of_the_tool(name):
             "cell-workspace",
         ),
         ('name = "linuxcnc-3axis"', 'name = "a\\nb"', "name", "wrong-type"),
-        ("[speeds]", "[speed]", "speeds", "key-missing"),
+        ("[speeds]", "[speed]", "speed", "key-unknown speeds"),
         ("[workspace]", "[[workspace]]", "workspace", "wrong-type"),
         ("version = 1", "version = 2", "version", "version-unknown 2"),
         ("version = 1", 'version = "1\\n2"', "version", "version-unknown '1\\n2'"),

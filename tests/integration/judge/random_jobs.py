@@ -11,7 +11,8 @@ import shapely
 
 from brushsvg import _core
 from brushsvg.errors import Error
-from brushsvg.machine.cells.cell import unit_mm
+from brushsvg.machine.arm.place import move_paper_of_cell
+from brushsvg.machine.cells.cell import robot_from_paper, unit_mm
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 
 from .checked import CRASHED, converted, put
@@ -93,11 +94,12 @@ def judged(
     if refusals := converted(source, program, "--cell", toml, *flags):
         wrong = (f"refused, and written: {refusals}",) if program.exists() else ()
         return Judged(tuple(refusals), wrong)
-    planned = without(flags, "--z-offset")
     text = _whole(program)
-    # convert writes the plan's file without the limits of the machine. The program has passed these limits.
-    if refusals := converted(source, plan, "--cell", toml, *planned):
-        if "--z-offset" in flags:  # the paper of the plan is lower and may be out of reach
+    # convert writes the plan's file without the limits of the machine. The program has passed these limits. A plan
+    # has no --z-offset, but its automatic ends depend on the height of the paper.
+    raised = put(folder / "raised.toml", write_cell(with_raised_paper(cell, flags)))
+    if refusals := converted(source, plan, "--cell", raised, *without(flags, "--z-offset")):
+        if "--z-offset" in flags and cell.servo:  # the paper of the plan is lower and may be out of reach
             return Judged(tuple(refusals))
         return Judged((), (f"no plan: {refusals}",))
     job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
@@ -150,6 +152,13 @@ def has_steep_ways(job: Job) -> bool:
     ways = np.vstack([np.abs(np.diff(each["poses_mm"], axis=0))[:, :3] for each in job.plan["passes"]])
     flat_mm = np.hypot(ways[:, 0], ways[:, 1])
     return bool(((flat_mm > 1e-6) & (ways[:, 2] > 1.5 * flat_mm)).any())
+
+
+def with_raised_paper(cell, flags: tuple[str, ...]):
+    """Return the cell with its paper raised by --z-offset. The paper of a servo stays at z 0."""
+    if "--z-offset" not in flags or cell.servo:
+        return cell
+    return move_paper_of_cell(cell, robot_from_paper(cell, float(said_of(flags, "--z-offset")[1])))
 
 
 def without_backlash(cell):

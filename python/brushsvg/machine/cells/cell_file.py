@@ -6,11 +6,13 @@ import json
 import math
 import os
 import textwrap
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 
 from ...errors import Error, format_value, name_file_in_errors, require_type
 from ...files import decode_text, find_file, names_in, read_bytes, toml_document
+from ...suggestions import did_you_mean
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries_of, required_keys_of, tables_of
 from .cell_check import check
 
@@ -61,11 +63,12 @@ def parse_cell(text: str) -> Cell:
     stations = document.pop("stations", [])
     if not isinstance(stations, list):
         raise Error("stations are written as [[stations]]", where="stations", code="wrong-type")
+    own_values = _read_table(Cell, document, "", [*TABLES, "stations"])
     for name in TABLES:
         if name not in parts and name not in OPTIONAL_TABLES:
-            raise Error(f"the cell file lacks the table {name}", where=name, code="key-missing")
+            raise Error("the cell file has no such table, but needs it", where=name, code="key-missing")
     cell = Cell(
-        **_read_table(Cell, document, ""),
+        **own_values,
         **{name: TABLES[name](**_read_table(TABLES[name], part, name)) for name, part in parts.items()},
         stations=tuple(
             Station(**_read_table(Station, part, f"station {number}")) for number, part in enumerate(stations, 1)
@@ -89,18 +92,20 @@ def write_cell(cell: Cell) -> str:
 MAX_ROWS = 1000  # largest number of rows of one key; no servo table and no workshop needs more
 
 
-def _read_table(table, values, where: str) -> dict:
+def _read_table(table, values, where: str, other_names: Sequence[str] = ()) -> dict:
+    """Read the keys of a table; other_names: further names that the file may have there."""
     entries_by_key = entries_of(table)
     prefix = f"{where}." if where else ""
     if not isinstance(values, dict):
-        raise Error(f"{where} must be a table", where=where, code="wrong-type")
+        raise Error("this must be a table", where=where, code="wrong-type")
     for key in values:
         if key not in entries_by_key:
-            sentence = f"a cell has no key {prefix}{key}; known here: {', '.join(entries_by_key)}"
+            known = [*entries_by_key, *other_names]
+            sentence = f"a cell has no such name{did_you_mean(key, known)} Known here are {', '.join(known)}"
             raise Error(sentence, where=prefix + key, code="key-unknown")
     for key in required_keys_of(table):
         if key not in values:
-            raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
+            raise Error("the cell file has no such key, but needs it", where=prefix + key, code="key-missing")
     return {key: _read_value(entries_by_key[key], value, prefix + key) for key, value in values.items()}
 
 
@@ -109,11 +114,11 @@ def _read_value(entry: Entry, value, where: str):
         return _read_text(value, where)
     if entry.kind == "texts":
         if not isinstance(value, list):
-            raise Error(f"{where} must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type")
+            raise Error(f"this must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type")
         return tuple(_read_text(item, where) for item in value)
     if entry.kind == "yes":
         if not isinstance(value, bool):
-            raise Error(f"{where} must be true or false, not {str(value)[:40]}", where=where, code="wrong-type")
+            raise Error(f"this must be true or false, not {str(value)[:40]}", where=where, code="wrong-type")
         return value
     if entry.kind in ("number", "whole"):
         return _read_number(entry, value, where)
@@ -122,7 +127,7 @@ def _read_value(entry: Entry, value, where: str):
 
 def _read_text(value, where: str) -> str:
     if not isinstance(value, str) or not value.isprintable() or not value or len(value) > 200:
-        raise Error(f"{where} must be one line of text", where=where, code="wrong-type")
+        raise Error("this must be one line of text", where=where, code="wrong-type")
     return value
 
 
@@ -130,9 +135,9 @@ def _read_number(entry: Entry, value, where: str):
     types = int if entry.kind == "whole" else int | float
     if isinstance(value, bool) or not isinstance(value, types) or value != value or abs(value) == math.inf:
         expected = "a whole number" if entry.kind == "whole" else "a finite number"
-        raise Error(f"{where} must be {expected}, not {value!r:.40}", where=where, code="wrong-type")
+        raise Error(f"this must be {expected}, not {value!r:.40}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
-        sentence = f"{where} {format_value(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]"
+        sentence = f"{format_value(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]"
         raise Error(sentence, where=where, code="out-of-range")
     return value if entry.kind == "whole" else float(value)
 
@@ -140,11 +145,11 @@ def _read_number(entry: Entry, value, where: str):
 def _read_rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
     count = shape[0]
     if isinstance(value, list) and len(value) > MAX_ROWS:
-        sentence = f"{where} has {len(value)} rows, more than {MAX_ROWS}"
+        sentence = f"{len(value)} rows are more than {MAX_ROWS}"
         raise Error(sentence, where=where, code="out-of-range")
     if not isinstance(value, list) or (count is not None and len(value) != count):
-        sentence = f"{where} must be {_shape_in_words(shape)}, not {value!r:.40}"
-        raise Error(sentence, where=where.partition("[")[0], code="wrong-type")
+        sentence = f"this must be {_shape_in_words(shape)}, not {value!r:.40}"
+        raise Error(sentence, where=where, code="wrong-type")
     if len(shape) == 1:
         return tuple(_read_number(entry, item, where) for item in value)
     rows = enumerate(value)
