@@ -159,8 +159,9 @@ def _allow_for_polynomial_error(
     kept = np.eye(size) - information @ np.linalg.inv(information + unfollowed)
     posterior = np.linalg.inv(np.eye(size) + kept @ information)
     inverse_root = np.linalg.inv(root)
-    numbers = _numbers_of_laws(known.laws) + inverse_root @ posterior @ kept @ evidence
     after[:size, :size] = inverse_root @ (posterior + posterior.T) / 2 @ inverse_root.T
+    numbers = _numbers_of_laws(known.laws) + inverse_root @ posterior @ kept @ evidence
+    numbers = _keep_width_rising(numbers, after[:size, :size], known.deepest_mm)
     by_law = {law: numbers[place].tolist() for law, place in numbers_of().items()}
     fitted_laws = fit.laws
     ratio = float(by_law["tip_to_widest"][0])
@@ -173,6 +174,21 @@ def _allow_for_polynomial_error(
         fitted_laws.round_tail,
     )
     return laws, after
+
+
+def _keep_width_rising(numbers: np.ndarray, covariance: np.ndarray, deepest_mm: float) -> np.ndarray:
+    """Return the most likely numbers for which the half width does not fall down to deepest_mm.
+
+    A half width of two coefficients that rises at touch falls first at the greatest depth. There, its slope is g x for
+    the numbers x. If g x < 0, the condition g x = 0 moves x by -C g (g x) / (g C g).
+    """
+    slope_of = np.zeros(len(numbers))
+    place = numbers_of()["half_width"]
+    powers = np.arange(1, place.stop - place.start + 1)
+    slope_of[place] = powers * deepest_mm ** (powers - 1)
+    slope = min(slope_of @ numbers, 0.0)
+    moved = covariance @ slope_of
+    return numbers - moved * slope / (slope_of @ moved)
 
 
 def find_widening(known: KnownLaws, loosened: np.ndarray, loose) -> dict[str, float]:
