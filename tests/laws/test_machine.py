@@ -24,10 +24,11 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 import machine_recovery  # noqa: E402
 
 from brushsvg.calibration.marks import machine_found  # noqa: E402
-from brushsvg.calibration.marks.from_marks import calibrate_marks  # noqa: E402
+from brushsvg.calibration.marks.from_marks import calibrate_marks, find_ignored_errors  # noqa: E402
 from brushsvg.calibration.marks.mark_input import read_painted  # noqa: E402
 from brushsvg.calibration.marks.mark_report import report  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402
+from brushsvg.reporting.report_text import GOOD  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -156,6 +157,31 @@ def test_ignoring_the_machine_gives_a_wrong_lag():
     brush, painted = painted_by(5, ("lean",))
     assert lag_off(calibrate_marks(painted, "b", options=options_for(())), brush) > 0.03
     assert lag_off(calibrate_marks(painted, "b", options=options_for(("lean",))), brush) < 0.03
+
+
+@pytest.mark.parametrize("parts", [(), ("lean",), ("tilt",), ("lean", "tilt")])
+def test_errors_that_the_fit_leaves_out_are_advised(parts):
+    _, painted = painted_by(5, parts)
+    made = report(calibrate_marks(painted, "b", options=options_for(())))
+    advised = [line for line in made.lines if "--machine" in line]
+    biasing = [part for part in parts if part in machine_found.BIASING_PARTS]
+    assert len(advised) == bool(biasing)
+    assert made.verdict != GOOD or not biasing
+    for line in advised:
+        assert line.endswith(f"--machine {','.join(biasing)}"), line
+
+
+def test_no_errors_are_advised_once_the_fit_includes_them():
+    _, painted = painted_by(5, ("lean",))
+    made = calibrate_marks(painted, "b", options=options_for(("lean",)))
+    assert find_ignored_errors(made) == []
+
+
+def test_an_error_that_the_cell_cannot_undo_is_not_advised():
+    _, painted = painted_by(5, ("lean",))
+    made = calibrate_marks(painted, "b", options=options_for(()))
+    assert {number.part for number in find_ignored_errors(made)} == {"lean"}
+    assert not [line for line in report(made, advised_parts=("backlash",)).lines if "--machine" in line]
 
 
 @pytest.mark.parametrize("seed", [54, 2005])

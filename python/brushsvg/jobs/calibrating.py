@@ -30,7 +30,12 @@ from ..calibration.dabs.from_dabs import calibrate_dabs
 from ..calibration.from_file import fit_measurements
 from ..calibration.marks import mark_report, photo_report
 from ..calibration.marks.from_marks import MarkCalibration, calibrate_marks, options_for
-from ..calibration.marks.machine_found import refuse_unknown_parts, report_inseparable_lean, request_machine_parts
+from ..calibration.marks.machine_found import (
+    BIASING_PARTS,
+    refuse_unknown_parts,
+    report_inseparable_lean,
+    request_machine_parts,
+)
 from ..calibration.marks.mark_input import read_painted
 from ..calibration.marks.paint_found import calibrate_paint
 from ..calibration.numbers import law_report
@@ -385,7 +390,18 @@ def _calibrate_from_measurements(source, name, default_name, options, stage, war
     else:
         warn(file, calibration.doubts)
         kind = "numbers"
-    return BrushCalibration(calibration.brush, kind, calibration, _REPORT_MODULES[kind].report(calibration))
+    make_report = _REPORT_MODULES[kind].report
+    if kind == "numbers":
+        return BrushCalibration(calibration.brush, kind, calibration, make_report(calibration))
+    report = make_report(calibration, advised_parts=_list_advised_parts(options))
+    return BrushCalibration(calibration.brush, kind, calibration, report)
+
+
+def _list_advised_parts(options: CalibrationOptions) -> tuple[str, ...]:
+    """Return the parts of the machine that the report may advise to estimate as well."""
+    if options.cell is None:
+        return BIASING_PARTS
+    return select_correctable_parts(BIASING_PARTS, load_cell(options.cell))[0]
 
 
 def _calibrate_from_strokes(photos, read: ChartReading, name, options, stage, warn) -> BrushCalibration:
@@ -396,7 +412,7 @@ def _calibrate_from_strokes(photos, read: ChartReading, name, options, stage, wa
             calibration = maximize_overlap(edge_fit, stage)
     warn(photos[0], mark_report.list_strays(edge_fit) + report_inseparable_lean(edge_fit.painted, edge_fit.expected))
     kind = "overlap" if options.aim == "overlap" else "marks"
-    report = _REPORT_MODULES[kind].report(calibration, of_photo=True)
+    report = _REPORT_MODULES[kind].report(calibration, of_photo=True, advised_parts=_list_advised_parts(options))
     return BrushCalibration(calibration.brush, kind, calibration, report, reading_in_words(read), _read=read)
 
 
@@ -441,7 +457,7 @@ def _fit_lag_from_strokes(photos, read: ChartReading, name, options, stage, warn
         stroke_fit = _fit_strokes(read, name, options, stage)
         lag_fit = lag_by_outlines(stroke_fit, known_brush, name)
     warn(photos[0], mark_report.list_strays(stroke_fit))
-    report = lag_by_outlines_report.report(lag_fit)
+    report = lag_by_outlines_report.report(lag_fit, _list_advised_parts(options))
     return BrushCalibration(lag_fit.brush, "lag", lag_fit, report, reading_in_words(read), _read=read)
 
 

@@ -12,6 +12,8 @@ import numpy as np
 
 from ... import _core
 from ...errors import Error, Notice, require_type
+from .sheet_scale import MIN_SIGNIFICANT_SIGMAS
+from .stray_marks import MIN_SPREAD_MM
 
 # Prior standard deviation of each number. A tool on a long thin arm bends by half of its depth. The length of a printed
 # or scanned page is right to 1 %. A table is 1 mm off level over a sheet. Worn screws and loose belts lose some tenths
@@ -23,6 +25,9 @@ PARTS = {
     "backlash": ("backlash_mm", 0.2),
     "field": ("field_mm", 0.5),
 }
+# Parts that bias the laws if the fit leaves them out. Axes and a field displace whole marks, which the fit allows for.
+BIASING_PARTS = ("lean", "tilt", "backlash")
+IGNORED_ERRORS = "the machine has errors that the fit leaves out"  # a reservation in a verdict
 FIELD_TERMS = ("u u", "u v", "v v")
 # Remarks in the table on numbers that some machines cannot compensate, see cell.list_uncorrectable_keys.
 SERVO_REMARK = "# leave this line out for a brush on a servo or a pen lift"
@@ -109,9 +114,44 @@ def list_machine_numbers(fit, covariance: np.ndarray, options: _core.MarkOptions
     ]
 
 
+def select_visible_numbers(numbers: list[Number], deepest_mm: float, reach_mm: float) -> list[Number]:
+    """Return the numbers of lean, tilt and backlash that chance does not explain and that displace paint visibly.
+
+    deepest_mm: the greatest depth. reach_mm: the greatest distance of a mark from the middle of the sheet. The
+    displacement is visible if it exceeds MIN_SPREAD_MM.
+    """
+    greatest_mm = {"lean": deepest_mm, "tilt": reach_mm, "backlash": 1.0}
+    significant = MIN_SIGNIFICANT_SIGMAS / _core.interval_factor_95()
+    return [
+        number
+        for number in numbers
+        if abs(number.value) > significant * number.half
+        and abs(number.value) * greatest_mm[number.part] > MIN_SPREAD_MM
+    ]
+
+
+def advise_parts(ignored: list[Number], requested: tuple[str, ...]) -> list[str]:
+    """Return a sentence that names errors which the fit leaves out, and the option that includes them.
+
+    ignored: the errors. requested: the parts that were requested already.
+    """
+    if not ignored:
+        return []
+    parts = ",".join(part for part in PARTS if part in requested or part in {number.part for number in ignored})
+    shown = ", ".join(map(_describe_number, ignored))
+    return [
+        f"the marks show errors of the machine, which bias the laws because the fit leaves them out ({shown}): use "
+        f"--machine {parts}"
+    ]
+
+
+def _describe_number(number: Number) -> str:
+    return f"{number.name}: {number.value:.4f} +- {number.half:.4f} {number.unit}".rstrip()
+
+
 def describe_numbers(found: list[Number]) -> list[str]:
     """Return a line for each number, and a line about a field that is not used."""
-    lines = [f"{number.name}: {number.value:.4f} +- {number.half:.4f} {number.unit}".rstrip() for number in found]
+    lines = [_describe_number(number) for number in found]
     field = [number for number in found if number.part == "field"]
     if (
         field

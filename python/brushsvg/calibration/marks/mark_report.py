@@ -19,6 +19,7 @@ from .from_marks import (
     HALF_TERMS,
     LAG_TERMS,
     MIN_CHI_SQUARE,
+    find_ignored_errors,
     find_undetermined_laws,
     front_ratio,
     height_at,
@@ -36,22 +37,24 @@ WORST_MARKS = 3  # number of marks that the report lists
 PAINT, PREDICTED, PATH = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
-def report(calibration, of_photo: bool = False) -> Report:
+def report(calibration, of_photo: bool = False, advised_parts: tuple[str, ...] = machine_found.BIASING_PARTS) -> Report:
     """Return the report that `brushsvg calibrate` prints.
 
     calibration: a from_marks.MarkCalibration. of_photo: the marks come from a photograph, for which remedies are flags
-    instead of keys of a measurement file.
+    instead of keys of a measurement file. advised_parts: the parts of the machine that may be advised to be fitted.
 
     "Do not use" means that marks overlap with their predictions by 0.5 or less without displacements. "Usable, but"
     means one of the following: the overlap is less than 0.9; the lag or the half width is undetermined at some depths,
     though at too few for a refusal; the fit stopped before it converged; marks were left out or are astray; the sheet
-    differs from the expected one; a tenth of the edges is masked; too few depths were painted for the usual lag.
+    differs from the expected one; the marks show errors of the machine that the fit leaves out; a tenth of the edges is
+    masked; too few depths were painted for the usual lag.
     """
     brush, fit = calibration.brush, calibration.fit
     in_place, moved = measure_mean_overlaps(calibration)
     unexpected = _unexpected(calibration, of_photo)
     reasons_against, low_overlap = judge_overlap(moved)
     strays = plural(len(calibration.strays), "mark")
+    ignored = find_ignored_errors(calibration, advised_parts)
     reservations = [
         *low_overlap,
         *(f"the {law.replace('_', ' ')} is only known as {value}" for law, _, value in find_undetermined_laws(brush)),
@@ -63,6 +66,7 @@ def report(calibration, of_photo: bool = False) -> Report:
         "expected"
         if unexpected
         else "",
+        machine_found.IGNORED_ERRORS if ignored else "",
         f"{100 * fit.outlier_share:.0f} % of the edge points are outliers"
         if fit.outlier_share > MAX_MASKED_SHARE
         else "",
@@ -82,6 +86,7 @@ def report(calibration, of_photo: bool = False) -> Report:
             if cell
             else []
         ),
+        *machine_found.advise_parts(ignored, machine_found.list_requested_parts(calibration.expected)),
         *_describe_strays(calibration),
         *unexpected,
         *_warn_of_poor_fit(fit, moved),

@@ -10,19 +10,21 @@ from ...model.describe import LAWS
 from ...model.plot import brush_picture
 from ...reporting.report_text import Report, format_overlap, verdict
 from ..law_text import depths_shown, format_coefficients, law_table, name_and_depths, paper_height, summarize_laws
+from ..marks.machine_found import BIASING_PARTS
 from ..marks.mark_report import judge_overlap, measure_mean_overlaps
 from ..marks.mark_report import report as edge_report
 from ..marks.mark_report import report_picture as edge_report_picture
 
 
-def report(calibration, of_photo: bool = False) -> Report:
+def report(calibration, of_photo: bool = False, advised_parts: tuple[str, ...] = BIASING_PARTS) -> Report:
     """Return the report that `brushsvg calibrate --aim overlap` prints.
 
-    calibration: a by_overlap.OverlapCalibration. of_photo: see mark_report.report.
+    calibration: a by_overlap.OverlapCalibration. of_photo, advised_parts: see
+    mark_report.report.
     """
     brush, edges, found = calibration.brush, calibration.by_edges, calibration.found
     if found.kind == "edges":
-        by_edges = edge_report(edges, of_photo)
+        by_edges = edge_report(edges, of_photo, advised_parts)
         return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
     (in_place, moved), (now_in_place, now_moved) = (
         measure_mean_overlaps(edges),

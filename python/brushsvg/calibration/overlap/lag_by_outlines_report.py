@@ -12,16 +12,19 @@ from ..law_text import (
     name_and_depths,
     paper_height,
 )
+from ..marks.from_marks import find_ignored_errors
+from ..marks.machine_found import BIASING_PARTS, IGNORED_ERRORS, advise_parts, list_requested_parts
 from ..marks.mark_report import judge_overlap, measure_mean_overlaps
 
 
-def report(found) -> Report:
+def report(found, advised_parts: tuple[str, ...] = BIASING_PARTS) -> Report:
     """Return the report that `brushsvg calibrate --brush` prints.
 
-    found: a lag_by_outlines.LagByOutlines.
+    found: a lag_by_outlines.LagByOutlines. advised_parts: see mark_report.report.
     """
     brush, outline_brush, before = found.brush, found.outline_brush, found.before
     overlap_before, overlap_now = measure_mean_overlaps(before)[1], measure_mean_overlaps(found.mark_calibration)[1]
+    ignored = find_ignored_errors(before, advised_parts)
     worse = "the measured outlines predict the marks worse than the usual drops or eggs: check the dabs again"
     reasons_against, reservations = judge_overlap(overlap_now)
     lines = [
@@ -32,6 +35,7 @@ def report(found) -> Report:
         "mark is moved to its predicted place)",
         paper_height(found.height_mm),
         f"residuals of the edges: standard deviation {found.noise_mm:.2f} mm",
+        *advise_parts(ignored, list_requested_parts(before.expected)),
     ]
     depths = depths_shown(brush, found.mark_calibration.painted.deepest_mm)
     names = (f"lag of {outline_brush.name}"[:19], "with drops or eggs", "with its outlines")
@@ -42,7 +46,10 @@ def report(found) -> Report:
     )
     details = [*law_table(depths, columns), HALF_95, "", *format_coefficients(brush, ["lag"])]
     return Report(
-        verdict(reasons_against, [worse if overlap_now < overlap_before else "", *reservations]),
+        verdict(
+            reasons_against,
+            [worse if overlap_now < overlap_before else "", *reservations, IGNORED_ERRORS if ignored else ""],
+        ),
         tuple(lines),
         tuple(details),
     )
