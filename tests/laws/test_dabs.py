@@ -289,5 +289,9 @@ def test_a_chart_of_dabs_needs_a_brush_with_known_lag(tmp_path, capsys):
     (tmp_path / "photo.jpg").write_bytes(photographed("lopsided"))
     (tmp_path / "dabs.json").write_text(write_chart(printed()))
     files = [str(tmp_path / name) for name in ("photo.jpg", "dabs.json", "own.json")]
-    assert main(["calibrate", "--force", files[0], "--chart", files[1], "-o", files[2]]) == 1
+    words = ["calibrate", "--force", files[0], "--chart", files[1], "-o", files[2]]
+    assert main(words) == 1
     assert "--brush" in capsys.readouterr().err and not (tmp_path / "own.json").exists()
+    known = [*words, "--brush", "round-6"]
+    assert main([*known, "--spread", files[1]]) == 1
+    assert "--spread" in capsys.readouterr().err

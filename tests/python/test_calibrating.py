@@ -67,6 +67,8 @@ CONTRADICTIONS = [
     ("photo.jpg", {}),
     ("photo.jpg", {"chart": "chart.json", "paint": True, "aim": "overlap"}),
     ("photo.jpg", {"chart": "chart.json", "brush": "round-6", "aim": "overlap"}),
+    ("photo.jpg", {"chart": "chart.json", "absolute": True}),
+    ("photo.jpg", {"chart": "chart.json", "total": True}),
     ("photo.jpg", {"chart": "chart.json", "dpi": 300.0, "bar_mm": 100.0}),
     ("photo.jpg", {"plan": "plan.json"}),
     ("photo.jpg", {"plan": "plan.json", "prior": "round-6", "aim": "overlap"}),
@@ -79,6 +81,12 @@ def test_options_that_contradict_are_refused_before_any_file_is_read(source, opt
     assert find_contradiction(source, CalibrationOptions(**options))
     with refused("options-contradict"):
         brushsvg.calibrate(source, **options)
+
+
+@pytest.mark.parametrize("option", ["absolute", "total"])
+def test_options_for_numbers_are_refused_for_painted_marks(option):
+    with refused("options-contradict"):
+        brushsvg.calibrate({"plan": {}, "marks": [{}]}, **{option: True})
 
 
 def test_the_command_refuses_contradicting_options_as_wrong_usage(table, capsys):

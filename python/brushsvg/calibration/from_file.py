@@ -73,6 +73,10 @@ def fit_measurements(
             raise Error(sentence, code="options-contradict")
         _read_pictures(contents, read)
         return calibrate_measured(contents, name, bool(absolute), bool(total))
+    if absolute or total:
+        flag = "--norm absolute" if absolute else "--total"
+        sentence = f"{flag} is for measured numbers: the fit of painted marks detects outliers itself"
+        raise Error(sentence, code="options-contradict")
     painted = read_painted(contents.plan, contents.marks, read)
     options = options_for(contents.expected)
     request_machine_parts(options, machine)

@@ -435,6 +435,7 @@ def _calibrate_from_dabs(photos, read: ChartReading, name, options, warn) -> Bru
             f"{_path_of(options.chart) or 'this'} is a chart of dabs: give the brush whose lag is known, --brush FILE",
         ),
         (bool(options.machine), "--machine needs strokes: dabs say nothing about the machine"),
+        (options.spread is not None, "--spread is for strokes: calibrate averages the places of dabs"),
         (options.height_mm is not None, "--height is for strokes: calibrate takes the depths of dabs from the chart"),
     ):
         if is_broken:

@@ -98,6 +98,9 @@ def find_contradiction(source, options: CalibrationOptions) -> str:
         (options.paint and options.aim != "edges", "--paint fits the edges of marks: leave --aim overlap out"),
     ]
     if is_photo:
+        for is_given, flag in ((options.absolute, "--norm absolute"), (options.total, "--total")):
+            why = f"{flag} is for measured numbers: the fit of painted marks detects outliers itself"
+            rules.append((is_given, why))
         is_wrong_scan = options.dpi is not None and (len(photos) > 1 or options.bar_mm is not None)
         rules += [
             (
