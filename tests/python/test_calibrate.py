@@ -668,6 +668,11 @@ def test_unknown_machine_errors_are_refused_with_the_known_ones(machine, code):
         brushsvg.calibrate("marks.json", machine=machine)
 
 
+def test_the_command_names_the_one_unknown_machine_error(capsys):
+    assert main(["calibrate", "m.csv", "-o", "b.json", "--machine", "lean,wind"]) == 2
+    assert "'wind'" in capsys.readouterr().err
+
+
 def test_measured_numbers_cannot_estimate_a_machine(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"

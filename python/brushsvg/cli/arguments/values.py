@@ -127,8 +127,9 @@ def machine_parts(text: str) -> tuple[str, ...]:
     from ...calibration.marks.machine_found import PARTS
 
     parts = [part.strip() for part in text.split(",")]
-    if not set(parts) <= set(PARTS):
-        raise argparse.ArgumentTypeError(f"{text[:24]!r} is not some of {','.join(PARTS)}")
+    for part in parts:
+        if part not in PARTS:
+            raise argparse.ArgumentTypeError(f"{part[:24]!r} is not one of {', '.join(PARTS)}")
     return tuple(part for part in PARTS if part in parts)
 
 
