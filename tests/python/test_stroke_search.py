@@ -216,6 +216,18 @@ def test_a_letter_that_repeats_is_painted_alike_everywhere(tmp_path, monkeypatch
             assert str(own.stroke) == str(first.stroke).replace("l0", f"l{k}")
 
 
+def test_a_letter_that_repeats_keeps_its_own_settings(tmp_path):
+    """Strokes that the search replaced had the speed, order, passes and reload of the first equal letter."""
+    shape = CORNERS["a Z"]
+    first = f'<path id="first" data-brushsvg-speed="5" data-brushsvg-reload="yes" d="{shape}"/>'
+    again = f'<path id="again" data-brushsvg-speed="12" data-brushsvg-order="1" d="{shape}" transform="translate(60)"/>'
+    passes = letters(tmp_path, [], more=first + again).plan.passes
+    for name, speed_mm_s, order, reload in (("first", 5, None, True), ("again", 12, 1, None)):
+        own = [each for each in passes if str(each.stroke).startswith(name)]
+        assert {each.speed_mm_s for each in own} == {speed_mm_s}
+        assert {(each.settings.order, each.settings.reload) for each in own} == {(order, reload)}
+
+
 def test_equal_strokes_are_compensated_once_and_keep_their_names_and_places():
     brush = find_brush("round-6")
     first = _core.Stroke.from_points([(20, 20), (50, 20), (50, 45)], 4.0, "first")

@@ -200,7 +200,10 @@ def _replace_paths(rows: list[tuple], shape: _Shape, strokes: list, changed: lis
             new_rows.append(row)
             continue
         parts = [
-            new_stroke.replaced(id=_core.StrokeId(of.element, of.part, of.repeat, lane))
+            new_stroke.replaced(
+                id=_core.StrokeId(of.element, of.part, of.repeat, lane),
+                settings=row[0].settings.replaced(start=new_stroke.settings.start, end=new_stroke.settings.end),
+            )
             for new_stroke, lane in zip(paths[key], lanes[key], strict=False)  # a stroke that is left out has no parts
         ]
         new_rows += [(part, target, None) for part, target in _share_target(parts, row[1])]
