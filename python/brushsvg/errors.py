@@ -13,7 +13,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Real
 
 
@@ -72,6 +72,8 @@ class Notice:
     if they have equal subjects.
     advice: what the user should type, see Error.
     refused: `convert` writes no program because of this notice.
+    excess: how far a value exceeds its limit, in the unit of the sentence. Of many alike notices, the one with the
+    greatest excess is reported.
     """
 
     where: str
@@ -82,6 +84,7 @@ class Notice:
     about: str = ""
     advice: str = ""
     refused: bool = False
+    excess: float = field(default=0.0, compare=False, repr=False)
 
     def __iter__(self):
         """Yield the element and the text, for `where, sentence = notice`."""

@@ -14,7 +14,8 @@ MOST_NAMED = 4  # elements with one sentence that are all named: a brush has fou
 def summarize_notices(notices: Iterable[Notice]) -> list[Notice]:
     """Keep a few notices of each kind and count the others.
 
-    The kinds stay in the order in which they first appear. Equal notices, as on the copies of an element, count once.
+    The kinds stay in the order in which they first appear. The notice that stands for its kind has the greatest excess,
+    so that its remedy is enough for all. Equal notices, as on the copies of an element, count once.
     """
     kinds: dict[tuple, list[Notice]] = {}
     for notice in dict.fromkeys(notices):
@@ -27,7 +28,7 @@ def summarize_notices(notices: Iterable[Notice]) -> list[Notice]:
             *names, last = (notice.where for notice in alike)
             result.append(replace(alike[0], where=f"{', '.join(names)} and {last}"))
         else:
-            first = alike[0]
+            first = max(alike, key=lambda notice: notice.excess)
             more = f"and {len(alike) - 1} like it"
             if first.where:
                 result.append(replace(first, where=f"{first.where} {more}"))

@@ -34,6 +34,13 @@ def test_many_notices_with_one_code_are_counted_at_the_first():
     assert summarized([]) == []
 
 
+def test_many_notices_with_a_limit_are_reported_by_the_one_that_exceeds_it_most():
+    """The first copy was reported, and a drawing that was moved by that distance was refused again."""
+    beyond = [notice(f"p{k}", f"{mm} mm beyond", "off", excess=mm) for k, mm in enumerate((0.1, 4, 0.3, 4, 2))]
+    ((where, sentence),) = map(tuple, summarized_notices(beyond))
+    assert gives(where, "p1", "4") and sentence == "4 mm beyond"
+
+
 def test_four_notices_with_one_sentence_are_listed():
     reported = [(law, "measured to 4 mm") for law in ("lag", "tip_gap", "tip_to_widest", "half_width")]
     assert summarized(reported) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]

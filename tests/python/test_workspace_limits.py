@@ -405,6 +405,22 @@ def test_a_stroke_whose_round_start_exceeds_the_sheet_starts_pointed(tmp_path, c
     assert call(capsys, "check", program, drawing)[0] == 0
 
 
+def test_copies_beyond_a_limit_are_reported_by_the_one_that_is_furthest_beyond(tmp_path, capsys):
+    """The first copy was reported, and a drawing that was moved by that distance was refused again."""
+    lines = "".join(
+        f'<path id="l{k}" d="M{x} {10 + 10 * k}h20" fill="none" stroke="#000" stroke-width="3"/>'
+        for k, x in enumerate((1, -6, 1, 0, 1))
+    )
+    sheet = 'width="100mm" height="80mm" viewBox="0 0 100 80"'
+    (tmp_path / "a.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {sheet}>{lines}</svg>')
+    (tmp_path / "box.toml").write_text(write_cell(robot(box_mm=((-295.0, -200.0, -50.0), (300.0, 200.0, 300.0)))))
+    files = (tmp_path / "a.svg", "-o", tmp_path / "a.script", "--cell", tmp_path / "box.toml")
+    status, _, reported = in_json(capsys, "convert", *files)
+    assert status == 1
+    assert is_reported(reported, "out-of-box l1 4 -312.9")
+    assert is_reported(reported, "mark-off-sheet l1 4 7.50")
+
+
 @pytest.mark.parametrize(("margin_mm", "strokes"), [(8.0, 3), (3.0, 1)])
 def test_an_extra_stroke_outside_the_workspace_is_left_out(tmp_path, margin_mm, strokes):
     """An added stroke is left out where the cell has no room for it.

@@ -38,6 +38,7 @@ def find_paint_off_sheet(
                 code="mark-off-sheet",
                 about=side,
                 advice=advice,
+                excess=beyond,
             )
             for side, beyond in distances_beyond_edges(bounds_mm, sheet_mm).items()
             if beyond

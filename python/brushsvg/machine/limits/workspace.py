@@ -189,7 +189,7 @@ def _check_sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_
                 f"which is the sheet and {margin:.1f} mm around it"
             )
             advice = "move the drawing away from this edge, or raise workspace.margin_mm of the cell if there is room"
-            yield Notice("", sentence, code="tool-off-sheet", about=side, advice=advice)
+            yield Notice("", sentence, code="tool-off-sheet", about=side, advice=advice, excess=beyond - margin)
 
 
 def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -> Iterator[Notice]:
@@ -203,7 +203,9 @@ def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: fl
                 f"the tool goes to {name} {_outside_text(shown_mm, low, high)} mm, outside the range "
                 f"[{low:g}, {high:g}] mm of workspace.box_mm of cell {cell.name}{less}"
             )
-            yield Notice("", sentence, code="out-of-box", about=name, advice=_advise("box_mm", cell, name == "z"))
+            advice = _advise("box_mm", cell, name == "z")
+            excess = _distance_outside(shown_mm, low, high)
+            yield Notice("", sentence, code="out-of-box", about=name, advice=advice, excess=excess)
     if cell.servo:  # the paper is level, and a height beyond the table would silently become its last height
         heights = [row[0] for row in cell.servo.table]
         low, high = min(heights), max(heights)
@@ -216,7 +218,8 @@ def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: fl
                 advice = "measure a lower row of its table"
                 if height > high:  # the paper is higher than the table allows
                     advice = "measure a higher row of its table, or lower safe_mm"
-                yield Notice("", sentence, code="servo-out-of-range", advice=advice)
+                excess = _distance_outside(height, low, high)
+                yield Notice("", sentence, code="servo-out-of-range", advice=advice, excess=excess)
 
 
 def _check_reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm: float) -> Iterator[Notice]:
@@ -229,7 +232,8 @@ def _check_reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, sla
             f"the tool goes {_outside_text(shown_mm, min_mm, max_mm)} mm away from the robot's origin, outside the "
             f"range [{min_mm:g}, {max_mm:g}] mm of the reach of cell {cell.name}"
         )
-        yield Notice("", sentence, code="out-of-reach", advice=_advise("reach_mm", cell))
+        excess = _distance_outside(shown_mm, min_mm, max_mm)
+        yield Notice("", sentence, code="out-of-reach", advice=_advise("reach_mm", cell), excess=excess)
 
 
 def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
@@ -249,6 +253,10 @@ def _advise(key: str, cell: Cell, is_height: bool = False) -> str:
     moved = "the paper or the station" if cell.stations else "the paper"
     instead = "change the table [heights] of the cell" if is_height else "use a smaller sheet or drawing"
     return f"move {moved}, {instead}, or change workspace.{key} of the cell if the tool may go there"
+
+
+def _distance_outside(value: float, low: float, high: float) -> float:
+    return max(low - value, value - high)
 
 
 def _outside_text(value: float, low: float, high: float) -> str:
