@@ -569,6 +569,10 @@ SearchedShape moved_to(const PaintedShape& shape, SearchedShape found, const Vec
             stroke.id = shape.strokes[k].id;
             stroke.layer = shape.strokes[k].layer;
             stroke.colour = shape.strokes[k].colour;
+            Settings settings = shape.strokes[k].settings;
+            settings.start = stroke.settings.start;
+            settings.end = stroke.settings.end;
+            stroke.settings = settings;
         }
     }
     for (AddedStroke& added : found.added) {

@@ -200,10 +200,7 @@ def _replace_paths(rows: list[tuple], shape: _Shape, strokes: list, changed: lis
             new_rows.append(row)
             continue
         parts = [
-            new_stroke.replaced(
-                id=_core.StrokeId(of.element, of.part, of.repeat, lane),
-                settings=row[0].settings.replaced(start=new_stroke.settings.start, end=new_stroke.settings.end),
-            )
+            new_stroke.replaced(id=_core.StrokeId(of.element, of.part, of.repeat, lane))
             for new_stroke, lane in zip(paths[key], lanes[key], strict=False)  # a stroke that is left out has no parts
         ]
         new_rows += [(part, target, None) for part, target in _share_target(parts, row[1])]
