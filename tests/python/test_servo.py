@@ -397,7 +397,7 @@ def test_rounding_leaves_no_steep_path(name):
         poses = np.column_stack([40 + np.cumsum([(0, 0), *ways_mm], axis=0), np.minimum(heights_mm, 0.0)])
         written = as_written(_core.Pass("s", poses, 20.0), cell, np.eye(4))
         ways = np.diff(written.poses_mm, axis=0)
-        steep = is_too_steep_for_servo(ways, 20.0, cell, were_read=True)
+        steep = is_too_steep_for_servo(ways, 20.0, cell, "read")
         assert not steep.any(), (poses[:-1][:3], ways[steep])
         written_ways += len(ways)
     assert written_ways > 2000

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
@@ -466,7 +467,7 @@ def ends_rounded_mm(cell: Cell) -> float:
 
 
 def is_too_steep_for_servo(
-    ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False, were_read: bool = False
+    ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, ends: Literal["planned", "rounded", "read"] = "planned"
 ) -> np.ndarray:
     """Return which straight paths are too steep for a moving servo, (n,).
 
@@ -477,17 +478,16 @@ def is_too_steep_for_servo(
     - The feed, slowed down for the servo, would be below the lowest feed of the firmware.
 
     ways_mm: (n, 3) displacement of each path [mm].
-    are_rounded: whether the paths have the rounded ends of a program. Rounding may have made them steeper than
-    planned, and the limits allow for that.
-    were_read: whether they were also read from a program, in which each may be a part of a longer path.
+    ends: "planned", "rounded" as in a program, or "read" from a program, in which each path may be a part of a longer
+    one. Rounding may have made a path steeper than planned, and the limits allow for that.
     """
     rises_mm = np.abs(ways_mm[:, 2])
     flat_mm, length_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]), np.linalg.norm(ways_mm, axis=1)
     # the smallest number of parts that rounding may leave, the number that is written, or the largest one that may
     # have been read
-    longer_mm = ends_rounded_mm(cell) if were_read else 0.0 if are_rounded else -ends_rounded_mm(cell)
+    longer_mm = {"planned": -ends_rounded_mm(cell), "rounded": 0.0, "read": ends_rounded_mm(cell)}[ends]
     parts = servo_parts(ways_mm, cell, longer_mm)
-    if are_rounded or were_read:
+    if ends != "planned":
         rises_mm, flat_mm = np.maximum(rises_mm - value_mm(cell), 0.0), flat_mm + ends_rounded_mm(cell)
         length_mm = np.hypot(flat_mm, rises_mm)
     min_speed_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SERVO_SPEED_MM_S)

@@ -97,9 +97,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     exact, poses = exact[kept], poses[kept]
     if cell.servo:
         # Rounding may have made a lift on the spot a short steep path.
-        steep = is_too_steep_for_servo(
-            np.diff(poses, axis=0), a_pass.speed_mm_s, cell, are_rounded=True, were_read=was_read
-        )
+        ends = "read" if was_read else "rounded"
+        steep = is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, ends)
         on_arcs = [row for arc in arcs for row in range(arc.first, arc.last)]
         rows = np.setdiff1d(np.flatnonzero(steep), on_arcs)
         exact, poses = _insert_lifts(exact, rows), _insert_lifts(poses, rows)
@@ -130,10 +129,10 @@ def lift_on_steep_paths(a_pass, cell: Cell, was_read: bool = False):
     was_read: whether the pass was read from a program.
     """
 
+    ends = "read" if was_read else "planned"
+
     def find_steep_rows(poses: np.ndarray) -> np.ndarray:
-        return np.flatnonzero(
-            is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, were_read=was_read)
-        )
+        return np.flatnonzero(is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, ends))
 
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if not len(find_steep_rows(poses)):
