@@ -93,7 +93,7 @@ def test_a_refusal_for_nothing_to_paint_names_every_reason():
         '<text id="t">x</text><text>y</text><g display="none"/><path d="M0 0H1" data-brushsvg-skip="yes"/>'
         '<image/><path id="p" d="M0 0"/>'
     )
-    with refused("nothing-to-paint '2 times: text' --export-text-to-path 'image 1: ' 'p: ' 2"):
+    with refused("nothing-to-paint 't and 1 like it: text' --export-text-to-path 'image 1: ' 'p: ' 2"):
         read(body)
     with refused("nothing-to-paint 2 hidden"):
         read('<g display="none"/><path d="M0 0H1" visibility="hidden"/>')

@@ -33,5 +33,7 @@ def empty_drawing_error(notices: Iterable[Notice], left_out: Mapping[str, int] |
 
 
 def _summarize_notices(group: list[Notice]) -> str:
-    first = group[0]
-    return f"{first.where}: {first.text}" if len(group) == 1 else f"{len(group)} times: {first.text}"
+    first, more = group[0], len(group) - 1
+    if not first.where:
+        return f"{len(group)} times: {first.text}" if more else first.text
+    return f"{first.where}{f' and {more} like it' if more else ''}: {first.text}"
