@@ -179,7 +179,7 @@ def test_strokes_outside_the_measured_area_are_reported(desk, capsys):
             "cell-machine 0.12 0 0.1",
         ),
         (["field_reach_mm = [50.0, 1.0]"], "machine.field_reach_mm", "out-of-range 1 5 2000"),
-        (["field_mm = [1.0, 2.0]"], "machine.field_mm", "wrong-type"),
+        (["field_mm = [1.0, 2.0]"], "machine.field_mm[0]", "wrong-type"),
     ],
 )
 def test_an_invalid_field_table_is_refused(lines, where, expected):
