@@ -201,11 +201,10 @@ def find_ignored_errors(calibration: MarkCalibration, parts: tuple[str, ...] = B
         options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
     options.max_iterations = 1
     step = _core.fit_marks(calibration.painted.marks, fit.laws, options)
-    numbers = list_machine_numbers(step, np.array(step.covariance), options)
+    numbers = [each for each in list_machine_numbers(step, np.array(step.covariance), options) if each.part in ignored]
     ways = np.vstack([np.array(mark.poses_mm)[:, :2] for mark in calibration.painted.marks])
     reach_mm = float(np.abs(ways - fit.centre_mm).max())
-    visible = select_visible_numbers(numbers, options.deepest_mm, reach_mm)
-    return [number for number in visible if number.part in ignored]
+    return select_visible_numbers(numbers, options.deepest_mm, reach_mm)
 
 
 def change_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
