@@ -94,6 +94,8 @@ def toml_document(text: str, kind: str, version: int, format_is_missing: str = "
         raise Error(f"the file is not a {kind}: {says}", "format", code="format-unknown")
     if (found_version := content.pop("version", None)) != version or isinstance(found_version, bool):
         sentence = f"version {repr(found_version)[:40]} of the {kind} file is not known; known: {version}"
+        if found_version is None:
+            sentence = f"the {kind} file needs the line version = {version}"
         raise Error(sentence, "version", code="version-unknown")
     return content
 
