@@ -368,7 +368,7 @@ def _fast(way: Way, job: Job):
 def _jumps(way: Way, job: Job):
     """Find where a servo's height changes too fast while the brush touches.
 
-    The height may be at most two steps ahead of the height that the top speed allows. A step is at least one value.
+    The height may be at most two steps ahead of the height that the top speed allows.
     """
     heights, times, lines, now = [], [], [], 0.0
     value, step = job.servo_mm
@@ -384,7 +384,7 @@ def _jumps(way: Way, job: Job):
     heights, times = np.array(heights) - (job.machine or {}).get("height_mm", 0.0), np.array(times)
     for apart in (1, 3, 5, 7):
         rise = heights[apart:] - heights[:-apart]
-        allowed = 2 * max(step, value) + value + SLACK_MM + job.fastest_mm_s * 1.1 * (times[apart:] - times[:-apart])
+        allowed = 2 * step + value + SLACK_MM + job.fastest_mm_s * 1.1 * (times[apart:] - times[:-apart])
         on = np.minimum(heights[apart:], heights[:-apart]) <= job.touch_mm
         # Only the part of a rise below touch_mm counts: above this height the brush is in the air.
         rise = np.minimum(np.abs(rise), job.touch_mm - np.minimum(heights[apart:], heights[:-apart]) + 1e-9)

@@ -172,12 +172,15 @@ def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale |
 
 def _change_of_fit_with_tail(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
     """Return the change of the fit for other marks, with the chosen tail."""
-    default_widest = options.widest_per_half
+    return change_of_fit(fit, marks, _options_with_tail(fit, options))
+
+
+def _options_with_tail(fit, options: _core.MarkOptions) -> _core.MarkOptions:
+    """Return a copy of the options that keeps the tail of a fit."""
+    options = copy.copy(options)
     if fit.laws.round_tail:
         options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
-    change = change_of_fit(fit, marks, options)
-    options.round_tail, options.widest_per_half = False, default_widest
-    return change
+    return options
 
 
 def change_of_fit(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
@@ -192,13 +195,11 @@ def find_ignored_errors(calibration: MarkCalibration, parts: tuple[str, ...] = B
     parts: the parts to look for. They are additional unknowns of one Gauss-Newton step from the solution, which takes a
     tenth of the time of a whole fit and finds errors within some percent of it.
     """
-    fit, options = calibration.fit, copy.copy(calibration.expected)
+    fit, options = calibration.fit, _options_with_tail(calibration.fit, calibration.expected)
     ignored = [part for part in parts if part not in list_requested_parts(options)]
     if not ignored:
         return []
     request_machine_parts(options, tuple(ignored))
-    if fit.laws.round_tail:
-        options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
     options.max_iterations = 1
     step = _core.fit_marks(calibration.painted.marks, fit.laws, options)
     numbers = [each for each in list_machine_numbers(step, np.array(step.covariance), options) if each.part in ignored]
