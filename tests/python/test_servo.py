@@ -101,6 +101,23 @@ def test_no_lift_is_faster_than_programmed_after_rounding(values, step_mm):
     assert lifts > 8
 
 
+def test_a_lift_waits_for_the_value_of_a_short_line_before_it():
+    """Where a value is more than a step, a short line and a lift after it set two values, but not at once."""
+    cell = replace(CELL, servo=Servo(((-10.0, 0.0), (18.0, 100.0)), 0.1, 0.0))  # 0.28 mm for each value
+    poses = np.array([(10, 10, 0), (12, 10, -2.72), (12.02, 10, -2.53), (12.02, 10, 0)])
+    plan = SimpleNamespace(
+        sheet_mm=(100.0, 60.0),
+        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=(), tool_axes=(), colour="")],
+    )
+    lines = "".join(grbl_servo(program(plan, SimpleNamespace(name="b", max_speed_mm_s=25.0), cell))).splitlines()
+    short_line = next(k for k, line in enumerate(lines) if line.startswith("G1 X12.020"))
+    set_before, set_here = (int(re.search(r"S(\d+)", lines[k])[1]) for k in (short_line - 1, short_line))
+    assert set_here == set_before + 1, "the short line sets a new value"
+    after = [line for line in lines[short_line + 1 :] if not line.startswith("F")]
+    assert re.fullmatch(r"G4 P0\.0[45]\d*", after[0]), "0.28 mm at the speed of lifts, 6 mm/s"
+    assert after[1].startswith("M3 S")
+
+
 @pytest.mark.parametrize("rim_mm", [-5.0, 0.0])
 @pytest.mark.parametrize("language", ["grbl-servo", "grbl-3axis"])
 def test_moves_in_a_vessel_below_the_paper_are_slow(tmp_path, monkeypatch, capsys, language, rim_mm):

@@ -37,7 +37,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
     yield f"{MODE_WORDS}\n"
     feed = feed_of_speed_mm_min(program.cell.speeds.travel_mm_s)
     yield f"G1 F{feed:.1f}\n"
-    here, value = None, 0
+    here, value, behind_mm = None, 0, 0.0
     for section in program.sections():
         if here is None:  # raise the brush before the first move
             here = np.array([0.0, 0.0, program.rise_mm])
@@ -54,7 +54,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
                 yield f"F{feed_word:.1f}\n"
                 feed = feed_word
             fastest = program.touching_mm_s if step.meaning in TOUCHING_MEANINGS else math.inf
-            value, feed = yield from _move_lines(step, here, value, program.cell, fastest, feed)
+            value, behind_mm, feed = yield from _move_lines(step, here, value, behind_mm, program.cell, fastest, feed)
             here = step.points_mm[-1]
     yield "\n" + grbl_comment(HELD_UP)
 
@@ -82,9 +82,13 @@ def _table_by_value(table: tuple) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _move_lines(
-    move: Move, here: np.ndarray, value: int, cell: Cell, fastest_mm_s: float, feed: float
-) -> Generator[str, None, tuple[int, float]]:
-    """Yield a move's lines and return value and feed [mm/min] after it; fastest_mm_s: limit of the tip."""
+    move: Move, here: np.ndarray, value: int, behind_mm: float, cell: Cell, fastest_mm_s: float, feed: float
+) -> Generator[str, None, tuple[int, float, float]]:
+    """Yield a move's lines, and return the servo's value, behind_mm and the feed [mm/min] after it.
+
+    behind_mm: rise [mm] for which the last line, which set the value, was too short.
+    fastest_mm_s: limit of the tip.
+    """
     servo = cell.servo
     path = np.concatenate([here[None], move.points_mm])
     steps = path[1:] - path[:-1]
@@ -93,21 +97,33 @@ def _move_lines(
     for first, end in pairwise([0, *run_starts, len(is_lift)]):
         if not is_lift[first]:
             feeds = line_feeds_mm_min(steps[first:end], move.speed_mm_s, fastest_mm_s)
-            value, feed = yield from _line_parts(path[first:end], steps[first:end], feeds, feed, cell)
+            value, behind_mm, feed = yield from _line_parts(path[first:end], steps[first:end], feeds, value, feed, cell)
             continue
         step_mm = servo.step_mm if move.meaning in TOUCHING_MEANINGS else np.inf
         for from_mm, to_mm in pairwise(path[first : end + 1, 2].tolist()):
             lifts = lift_steps(from_mm, to_mm, value, move.speed_mm_s, step_mm, servo)
             if lifts:
+                rise_mm = height_at(servo, lifts[0][0]) - height_at(servo, value)
+                if behind_mm and abs(behind_mm + rise_mm) > 2 * step_mm:
+                    yield _wait_line(int(_wait_ms(behind_mm, move.speed_mm_s)))
                 yield _lift_lines(lifts, servo.settle_s)
-                value = lifts[-1][0]
-    return value, feed
+                value, behind_mm = lifts[-1][0], 0.0
+    return value, behind_mm, feed
 
 
 @lru_cache(maxsize=256)  # most strokes of a drawing have the same landing and lift
 def _lift_lines(lifts: tuple[tuple[int, int], ...], settle_s: float) -> str:
-    lines = "".join(f"M3 S{value}\nG4 P{format_number(wait_ms / 1e3, 3)}\n" for value, wait_ms in lifts)
-    return lines + (f"G4 P{format_number(settle_s, 3)}\n" if settle_s else "")
+    lines = "".join(f"M3 S{value}\n{_wait_line(wait_ms)}" for value, wait_ms in lifts)
+    return lines + (_wait_line(1e3 * settle_s) if settle_s else "")
+
+
+def _wait_line(wait_ms: float) -> str:
+    return f"G4 P{format_number(wait_ms / 1e3, 3)}\n"
+
+
+def _wait_ms(rises_mm, speed_mm_s: float) -> np.ndarray:
+    """Return the time [ms] of a rise [mm], or of each of an array, at the feed that is written for a speed."""
+    return np.ceil(1e3 * np.abs(rises_mm) / (feed_of_speed_mm_min(speed_mm_s) / 60)).astype(int)
 
 
 @lru_cache(maxsize=256)
@@ -119,27 +135,26 @@ def lift_steps(
     The lift has no sideways move. The waits give the lift its speed. Heights are those of the whole values, so a lift
     after a line begins at the height of the line's last part.
     """
-    feed_mm_s = feed_of_speed_mm_min(speed_mm_s) / 60
     count = max(1, math.ceil(abs(to_mm - from_mm) / step_mm - 1e-9))
     servo_values = servo_values_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
     servo_values = np.concatenate([[value], servo_values])
     servo_values = servo_values[np.concatenate([[True], servo_values[1:] != servo_values[:-1]])]
     at_mm = np.interp(servo_values, *_table_by_value(servo.table))
-    waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
+    waits_ms = _wait_ms(at_mm[1:] - at_mm[:-1], speed_mm_s)
     return tuple(zip(servo_values[1:].tolist(), waits_ms.tolist(), strict=True))
 
 
 def _line_parts(
-    starts: np.ndarray, ways: np.ndarray, feeds: np.ndarray, feed: float, cell: Cell
-) -> Generator[str, None, tuple[int, float]]:
+    starts: np.ndarray, ways: np.ndarray, feeds: np.ndarray, value: int, feed: float, cell: Cell
+) -> Generator[str, None, tuple[int, float, float]]:
     """Yield straight lines at their feeds.
 
-    Returns the servo's value and the feed of the last part. Each line is written in parts. The height of a part is the
-    height at its middle.
+    Returns the servo's value in the last part, the rise [mm] for which that part was too short, and its feed. Each line
+    is written in parts. The height of a part is the height at its middle.
 
     starts, ways: (n, 3) start and displacement of each line.
     feeds: (n,) feed of each line [mm/min].
-    feed: feed before the first line [mm/min].
+    value, feed: the servo's value and the feed [mm/min] before the first line.
     """
     decimals = cell.decimals
     pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
@@ -163,7 +178,10 @@ def _line_parts(
             text = "\n".join(lines)
         feed = part_feeds[-1]
         yield text
-    return int(values[-1]), feed
+        value_before, value = ([value, *values.astype(int).tolist()])[-2:]
+    rise_mm = height_at(cell.servo, value) - height_at(cell.servo, value_before)
+    part_mm = float(np.linalg.norm(way[-1, :2])) / counts[-1]
+    return value, math.copysign(max(abs(rise_mm) - part_mm, 0.0), rise_mm), feed
 
 
 def line_feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
