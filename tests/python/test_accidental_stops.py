@@ -4,13 +4,16 @@ They are the rotation of the tool within a circle, each step of a servo's lift, 
 """
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from diagnostics import in_json, is_reported, refused
 
 import brushsvg
-from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg import _core
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.posts import POSTS
 
 CURVES = (
@@ -134,3 +137,15 @@ def test_a_uniformly_slower_stroke_is_not_a_stop(desk):
     path, text = written("axidraw-ebb")
     slow = re.sub(r"SM,(\d+)(?=,-?\d+,-?\d+\n)", lambda each: f"SM,{int(each[1]) * 5 // 4}", text)
     assert not is_reported(problems(path, slow, "axidraw-ebb"), "stands-in-paint")
+
+
+def test_a_short_rise_at_the_end_of_a_stroke_is_not_a_stop(desk):
+    """A part that rises at the end of a stroke is slower than its length and the servo's values say."""
+    cell = find_cell("axidraw-ebb")
+    speeds = replace(cell.speeds, paint_mm_s=7.5, press_mm_s=7.5, approach_mm_s=7.5)
+    Path("mine.toml").write_text(write_cell(replace(cell, servo=replace(cell.servo, step_mm=0.25), speeds=speeds)))
+    poses = np.array([(10, 10, 0), (10, 10, -0.3), (14, 13, -2.4), (14.08, 13.06, -2.2), (14.08, 13.06, 0)])
+    plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", poses, 7.5)])
+    Path("a.json").write_text(brushsvg.write_plan(plan))
+    brushsvg.convert("a.json", "a.ebb", cell="mine.toml")
+    assert brushsvg.check("a.ebb", "a.json", cell="mine.toml").problems == ()

@@ -59,12 +59,16 @@ def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Pr
 
     In this time the servo lifts or lowers the brush as far as the program allows. A part has one servo value, the value
     at its middle. The program does not state the change of height along a part: it is at most the change from the
-    middle of the previous part to the middle of the next one. The tip is assumed to move over this distance at its
-    maximum speed.
+    middle of the previous part to the middle of the next one, or a step of the servo where the brush turns from down to
+    up or the stroke ends. The tip is assumed to move over this distance at its maximum speed.
     """
-    heights_mm = np.array([height_at(program.cell.servo, act.same[0]) for act in acts])
-    steps_mm = np.abs(np.diff(heights_mm, append=heights_mm[-1]))
-    return np.hypot(ways_mm, steps_mm[:-1] + steps_mm[1:]) / program.touching_mm_s
+    servo = program.cell.servo
+    heights_mm = np.array([height_at(servo, act.same[0]) for act in acts])
+    rises_mm = np.diff(heights_mm, append=heights_mm[-1])
+    before_mm, after_mm = rises_mm[:-1], rises_mm[1:]
+    most_mm = np.abs(before_mm) + np.abs(after_mm)
+    turns = (before_mm * after_mm <= 0) & (most_mm > 0)
+    return np.hypot(ways_mm, np.where(turns, np.maximum(most_mm, servo.step_mm), most_mm)) / program.touching_mm_s
 
 
 def _moves_by_stroke(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:

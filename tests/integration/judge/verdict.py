@@ -350,10 +350,8 @@ def _fast(way: Way, job: Job):
     fast = (
         low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01 + rounded))
     )
-    # By the map of the paper, a vessel may stand lower than the paper.
     for k in np.flatnonzero(fast):
-        ends = np.array([way.starts[k], way.ends[k]])[:, :2]
-        fast[k] = not any(_to_path(ends, visit[:, :2]).max() < job.near_mm for visit in job.stations)
+        fast[k] = not _at_vessel(way, k, job)
     if fast.any():
         k = int(fast.argmax())
         yield f"fast while touching: {kinds[k]} at {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
@@ -365,23 +363,33 @@ def _fast(way: Way, job: Job):
         yield from _jumps(way, job)
 
 
+def _at_vessel(way: Way, row: int, job: Job) -> bool:
+    """Return whether a row of the way is over a vessel, which may stand lower than the paper."""
+    ends = np.array([way.starts[row], way.ends[row]])[:, :2]
+    return any(_to_path(ends, visit[:, :2]).max() < job.near_mm for visit in job.stations)
+
+
 def _jumps(way: Way, job: Job):
     """Find where a servo's height changes too fast while the brush touches.
 
-    The height may be at most two steps ahead of the height that the top speed allows.
+    The height may be at most two steps ahead of the height that the top speed allows. It counts from the paper, and
+    over a vessel from where the cell has the paper.
     """
     heights, times, lines, now = [], [], [], 0.0
     value, step = job.servo_mm
-    for leg in way.run.legs:
+    paper_mm = (job.machine or {}).get("height_mm", 0.0)
+    row_of_leg = dict(zip(way.leg, range(len(way.leg)), strict=True))
+    for number, leg in enumerate(way.run.legs):
         if leg.kind == "jump":
-            heights += [leg.start[2], leg.end[2]]
+            under_mm = 0.0 if paper_mm and _at_vessel(way, row_of_leg[number], job) else paper_mm
+            heights += [leg.start[2] - under_mm, leg.end[2] - under_mm]
             times += [now, now]
             lines += [leg.line, leg.line]
         elif leg.kind == "wait" or leg.takes_up:
             now += leg.seconds
         elif leg.kind != "stop":
             now += float(np.linalg.norm(np.subtract(leg.end, leg.start))) / max(leg.speed_mm_s, 1e-9)
-    heights, times = np.array(heights) - (job.machine or {}).get("height_mm", 0.0), np.array(times)
+    heights, times = np.array(heights), np.array(times)
     for apart in (1, 3, 5, 7):
         rise = heights[apart:] - heights[:-apart]
         allowed = 2 * step + value + SLACK_MM + job.fastest_mm_s * 1.1 * (times[apart:] - times[:-apart])
