@@ -140,13 +140,16 @@ def dense(path):
     return np.vstack(parts)
 
 
-def leash_mm(one, other):
+def leash_mm(one, other, heights_apart=False):
     """Return the shortest leash between two walkers from point to point.
 
     This is the discrete Frechet distance. It is at least the distance of the paths themselves, and at most
     one step more.
     """
-    away = np.linalg.norm(one[:, None] - other[None], axis=2)
+    offsets = one[:, None] - other[None]
+    away = np.linalg.norm(offsets, axis=2)
+    if heights_apart:
+        away = np.maximum(np.hypot(offsets[..., 0], offsets[..., 1]), np.abs(offsets[..., 2]))
     reached = np.empty_like(away)
     for i in range(len(one)):
         for j in range(len(other)):
@@ -162,9 +165,10 @@ def leash_mm(one, other):
     some.sampled_from(["same", "other poses", "scrubbed", "backwards", "swapped", "shorter", "any"]),
     some.sampled_from([0.0, 0.1, 0.4]),
     some.sampled_from([0.06, 0.2, 0.5, 1.0]),
+    some.booleans(),
 )
 @pytest.mark.slow
-def test_path_comparison_agrees_with_following_the_path_in_steps(seed, moves, how, away_mm, limit_mm):
+def test_path_comparison_agrees_with_following_the_path_in_steps(seed, moves, how, away_mm, limit_mm, heights_apart):
     random = np.random.default_rng(seed)
     requested = np.cumsum(random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0)  # may overlap itself or stand still
     some_ = int(random.integers(0, moves + 1))
@@ -180,8 +184,8 @@ def test_path_comparison_agrees_with_following_the_path_in_steps(seed, moves, ho
         "any": np.cumsum(random.choice([-0.7, 0.0, 0.7], (3, 3)), axis=0),
     }[how]
     found = found + away_mm * random.uniform(-1, 1, found.shape)
-    leash = leash_mm(dense(found), dense(requested))
-    at = find_departure(found, requested, limit_mm)
+    leash = leash_mm(dense(found), dense(requested), heights_apart)
+    at = find_departure(found, requested, limit_mm, heights_apart)
     if at is None:
         assert leash <= limit_mm + STEP_MM
     else:
@@ -224,3 +228,12 @@ def test_paths_that_begin_exactly_the_limit_apart_are_compared():
     found = np.array([(0.209, 15.048, -1.0), (-0.24625419303409143, 15.943435931880655, -1.0)])
     requested = np.array([(0.197, 15.032, -1.0), (0.48171279843137954, 16.707936453621663, -1.0)])
     assert find_departure(found, requested, 0.02) == 1
+
+
+def test_a_servo_may_be_off_sideways_and_in_height():
+    """Rounding sideways and the steps of a servo's height do not depend on each other."""
+    requested = np.array([(x, 0.0, -1.0) for x in range(10)])
+    assert find_departure(requested + np.array((0, 0.018, 0.018)), requested, 0.02) == 0
+    assert find_departure(requested + np.array((0, 0.018, 0.018)), requested, 0.02, heights_apart=True) is None
+    for away in ((0, 0.018, 0.021), (0, 0.021, 0.018), (0.015, 0.015, 0.018)):
+        assert find_departure(requested + away, requested, 0.02, heights_apart=True) is not None

@@ -97,13 +97,14 @@ def _check_pass(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
     # Where units are coarse, brushsvg drops a pose that is less than the smallest move from another one.
     limit_mm = max(MAX_PATH_DEVIATION_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # A servo's height changes in steps of whole values, so it is off the line by half a step and half a value. A pose
-    # at the servo value of the previous one is dropped, so the line may begin up to one value higher.
+    # at the servo value of the previous one is dropped, so the line may begin up to one value higher. These errors and
+    # those of rounding sideways do not depend on each other.
     allowance_mm = (_max_servo_step_mm(planned, cell) + 3 * value_mm(cell)) / 2 if cell.servo else 0.0
     steepness = limit_mm / (limit_mm + allowance_mm)
     if _pose_distance_mm(a_pass, planned) > limit_mm:  # it may still be the same path, with other poses
         (found, owner), (reference, _) = _with_arc_points(a_pass), _with_arc_points(planned)
         found, reference = found * (1, 1, steepness), reference * (1, 1, steepness)
-        at = find_departure(found, reference, limit_mm)
+        at = find_departure(found, reference, limit_mm, heights_apart=bool(cell.servo))
         if at is not None:
             away_mm = max(
                 _max_distance_mm(_with_midpoints(found), reference),
@@ -229,26 +230,39 @@ def _with_arc_points(a_pass) -> tuple[np.ndarray, np.ndarray]:
     return np.array(points), np.array(owner)
 
 
-def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | None:
+def find_departure(
+    found: np.ndarray, reference: np.ndarray, limit_mm: float, heights_apart: bool = False
+) -> int | None:
     """Return the first point of `found` at which it departs from `reference`.
 
     Returns None where it never departs. The paths (n, 3) and (m, 3) [mm] consist of straight moves. They match if one
     can go along both at once, from start to end, never backwards on either, and never further apart than the limit.
     Otherwise the returned index is the end of the first move of `found` on which this is no longer possible.
 
+    heights_apart: the limit applies to heights, and to distances seen from above, each by itself.
+
     The decision is exact, after Alt and Godau. One move of each path makes a cell, in which the pairs of places within
     the limit form a convex region. A cell is entered from the previous move of `found` or from the previous move of
     `reference`. The algorithm keeps how early on the other move it can be entered.
     """
     found, reference = ((path if len(path) > 1 else np.repeat(path, 2, axis=0)).tolist() for path in (found, reference))
-    if math.dist(found[0], reference[0]) > limit_mm:
+
+    def are_apart(point: list, other: list) -> bool:
+        if heights_apart:
+            return max(math.dist(point[:2], other[:2]), abs(point[2] - other[2])) > limit_mm
+        return math.dist(point, other) > limit_mm
+
+    def part_within(point: list, begin: list, end: list) -> tuple[float, float] | None:
+        return _part_within_limit(point, begin, end, limit_mm, heights_apart)
+
+    if are_apart(found[0], reference[0]):
         return 0
     cells = len(reference) - 1
     # By move of reference: the earliest share of it, coming from the previous move of found. Both paths begin here,
     # even if rounding puts their first points just beyond the limit below.
     entered = {0: 0.0}
     for j in range(cells):
-        free = _part_within_limit(found[0], reference[j], reference[j + 1], limit_mm)
+        free = part_within(found[0], reference[j], reference[j + 1])
         if free is None or free[0] > 0.0:
             break
         entered[j] = 0.0
@@ -258,11 +272,7 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
         begin, end = found[i], found[i + 1]
         next_entered: dict[int, float] = {}
         below = None  # the earliest share of the move of found, coming from the previous move of reference
-        if (
-            entered.get(0) == 0.0
-            and (free := _part_within_limit(reference[0], begin, end, limit_mm))
-            and free[0] == 0.0
-        ):
+        if entered.get(0) == 0.0 and (free := part_within(reference[0], begin, end)) and free[0] == 0.0:
             below = 0.0
         columns = sorted(entered)
         j = columns[0]
@@ -274,11 +284,11 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
                     break
                 j = columns[after]
                 continue
-            if free := _part_within_limit(end, reference[j], reference[j + 1], limit_mm):
+            if free := part_within(end, reference[j], reference[j + 1]):
                 least = free[0] if below is not None else max(free[0], early)
                 if least <= free[1]:
                     next_entered[j] = least
-            free = _part_within_limit(reference[j + 1], begin, end, limit_mm)
+            free = part_within(reference[j + 1], begin, end)
             if free is None:
                 below = None
             else:
@@ -288,16 +298,31 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
         if not next_entered:
             return i + 1
         entered = next_entered
-    is_whole = cells - 1 in entered and math.dist(found[-1], reference[-1]) <= limit_mm
+    is_whole = cells - 1 in entered and not are_apart(found[-1], reference[-1])
     return None if is_whole else len(found) - 1
 
 
-def _part_within_limit(point: list, begin: list, end: list, limit_mm: float) -> tuple[float, float] | None:
+def _part_within_limit(
+    point: list, begin: list, end: list, limit_mm: float, heights_apart: bool = False
+) -> tuple[float, float] | None:
     """Return the part of a move, as shares from 0 to 1, within the limit of a point, or None."""
     ax, ay, az = begin[0] - point[0], begin[1] - point[1], begin[2] - point[2]
     bx, by, bz = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
+    if not heights_apart:
+        return _part_in_ball((ax, ay, az), (bx, by, bz), limit_mm)
+    flat = _part_in_ball((ax, ay, 0.0), (bx, by, 0.0), limit_mm)
+    height = _part_in_ball((0.0, 0.0, az), (0.0, 0.0, bz), limit_mm)
+    if flat is None or height is None:
+        return None
+    first, last = max(flat[0], height[0]), min(flat[1], height[1])
+    return (first, last) if first <= last else None
+
+
+def _part_in_ball(start: tuple, way: tuple, radius_mm: float) -> tuple[float, float] | None:
+    """Return the part of a move, as shares from 0 to 1, within a ball around the origin, or None."""
+    (ax, ay, az), (bx, by, bz) = start, way
     square, along = bx * bx + by * by + bz * bz, ax * bx + ay * by + az * bz
-    over = ax * ax + ay * ay + az * az - limit_mm * limit_mm
+    over = ax * ax + ay * ay + az * az - radius_mm * radius_mm
     if square < 1e-18:
         return (0.0, 1.0) if over <= 0.0 else None
     root = along * along - square * over
