@@ -59,6 +59,19 @@ def test_layers_and_elements_can_be_selected(desk, capsys):
     assert agrees(reported, "selector-matches-nothing #c")
 
 
+def test_of_many_strokes_too_wide_for_a_brush_the_widest_is_reported(desk, capsys):
+    """The first one was reported. A drawing that was scaled as advised for it was refused again."""
+    shapes = "".join(f'<path id="s{w}" d="M10,{3 * w} h60 v{w} h-60 z"/>' for w in (10, 12, 30, 14, 18))
+    lines = "".join(f'<path id="l{w}" d="M10,{w + 9} h60" stroke-width="{w}"/>' for w in (9, 15, 11))
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="140mm" viewBox="0 0 100 140">'
+    (desk / "lines.svg").write_text(f'{head}<g fill="none" stroke="#000">{lines}</g></svg>')
+    status, _, reported = in_json(capsys, "convert", "lines.svg", "-o", "x.json")
+    assert status == 1 and is_reported(reported, "width-out-of-reach l15 15.000")
+    (desk / "shapes.svg").write_text(f"{head}{shapes}</svg>")
+    status, _, reported = in_json(capsys, "convert", "shapes.svg", "-o", "x.json", "--wide", "clamp")
+    assert status == 0 and is_reported(reported, "width-out-of-reach s30 30"), reported
+
+
 def test_warnings_about_a_drawing_precede_its_refusal(desk, capsys):
     """Warnings about a drawing are reported before its refusal.
 

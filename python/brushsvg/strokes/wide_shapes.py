@@ -76,6 +76,7 @@ def within_reach(
                     code="width-out-of-reach",
                     about="in passes" if k in filled else "wider" if worst > greatest else "narrower",
                     advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
+                    excess=2 * max(least - worst, worst - greatest),
                 )
             )
         painted += passes

@@ -349,15 +349,20 @@ def _find_stray_paint(
 
 
 def _refuse_wide_strokes(strokes: list, brush, options: Options) -> None:
-    """Raise Error for the first line that is wider than the brush, and for the first such shape with --wide refuse."""
+    """Raise Error for the widest line beyond the brush, and for the first such shape with --wide refuse."""
     _refuse_wide_lines(strokes, brush)
     if options.wide == "refuse":
         within_reach(strokes, brush, options.wide)
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
-    """Raise Error for the first line wider than the brush, before filled shapes, which need more time."""
-    for stroke, half_mm in find_wide_lines([stroke for stroke in strokes if not stroke.target_mm], brush):
+    """Raise Error for the widest line beyond the brush, whose advice is enough for all lines.
+
+    Lines come before filled shapes, which need more time.
+    """
+    wide_lines = find_wide_lines([stroke for stroke in strokes if not stroke.target_mm], brush)
+    if wide_lines:
+        stroke, half_mm = max(wide_lines, key=lambda line: line[1])
         brush.depth_for_half_width(half_mm, stroke.id)
 
 

@@ -59,6 +59,7 @@ def _report_wide_strokes(strokes, brush) -> list[Notice]:
             f"its line is {2 * half:.3g} mm wide, outside the range [{2 * least:.3g}, {2 * greatest:.3g}] mm of "
             f"brush {brush.name}, and convert will refuse it: draw narrower lines instead",
             code="width-out-of-reach",
+            excess=2 * (half - greatest),
         )
         for stroke, half in find_wide_lines(strokes, brush)
     ]
