@@ -7,6 +7,7 @@ import pytest
 from diagnostics import are_reported, refused
 from programs import forbidden, program, whole
 
+from brushsvg import _core
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.job_program import Job, unchecked_program
 from brushsvg.machine.moves import MEANINGS_AT_SAFE_HEIGHT, duration_s
@@ -131,4 +132,11 @@ def test_workspace_limits_are_exact():
 
 def test_a_pass_that_never_presses_is_refused():
     (found,) = forbidden(plan_of([(10, 10, 0), (20, 10, 0)]), brush_of(25.0), find_cell())
+    assert (found.where, found.code) == ("s1", "never-pressed")
+
+
+def test_a_pass_is_refused_if_rounding_leaves_nothing_of_its_depth():
+    """Each pose 0.0015 mm deep is less than the shortest move from one that stays, so no program would paint."""
+    plan = _core.Plan("b", "", (100, 60), [_core.Pass("s1", [(10, 10, 0), (10, 10, -0.0015), (20, 10, 0)], 20.0)])
+    (found,) = forbidden(plan, brush_of(25.0), find_cell("grbl-3axis"))
     assert (found.where, found.code) == ("s1", "never-pressed")

@@ -12,7 +12,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.inverse_kinematics import is_installed
 from .arm.place import find_unreachable
-from .cells.cell import Cell, Station, robot_from_paper, value_mm
+from .cells.cell import Cell, Station, min_part_mm, robot_from_paper, value_mm
 from .cells.language_limits import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS
 from .frames import transform_points
 from .limits.speeds import commanded_touching_mm_s
@@ -99,7 +99,7 @@ def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE
     problems += find_vessels_near_travel(cell, job.z_offset_mm)
     commanded_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
-        [_pass_at_servo_places(a_pass, made) for a_pass in left_loads],
+        [_pass_as_written(a_pass, made) for a_pass in left_loads],
         loads.sheet_mm,
         brush,
         cell,
@@ -142,16 +142,20 @@ def report_strokes_beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
     ]
 
 
-def _pass_at_servo_places(a_pass, program: Program):
+def _pass_as_written(a_pass, program: Program):
     """Return the pass for which limits are checked.
 
-    With a servo, its poses are the places at which the servo stands.
+    With a servo, its poses are the places at which the servo stands. Poses that are hardly pressed are those that
+    rounding leaves.
     """
-    if program.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
+    poses, cell = np.asarray(a_pass.poses_mm), program.cell
+    is_hardly_pressed = len(poses) and -2 * min_part_mm(cell) < poses[:, 2].min() < 0
+    if not (cell.servo or is_hardly_pressed) or not np.isfinite(poses).all():
         return a_pass
-    written = as_written(a_pass, program.cell, program.robot_from_frame)
-    poses = true_mm(written.commanded_mm, program.cell.machine)
-    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # a servo cannot tilt the brush
+    written = as_written(a_pass, cell, program.robot_from_frame)
+    poses = true_mm(written.commanded_mm, cell.machine)
+    axes = {} if written.axes is None else {"tool_axes": written.axes}
+    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s, **axes)
 
 
 def find_moves_out_of_limits(program: Program, sheet_mm) -> list[Notice]:
