@@ -17,7 +17,7 @@ import brushsvg
 from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.machine import preflight
-from brushsvg.machine.arm import place
+from brushsvg.machine.arm import follow_joints, place
 from brushsvg.machine.arm.follow_joints import flange_at, follow, joint_rates, lowest_joint_mm
 from brushsvg.machine.arm.inverse_kinematics import joint_frames_of, joints_of
 from brushsvg.machine.cells.cell import Paper, robot_from_paper
@@ -97,6 +97,50 @@ def test_a_job_out_of_reach_is_refused_and_the_suggested_paper_position_works(wh
         found = judge(flange_at(cell, frame, robot_mm))
         wrapped = np.stack([found + turn * 2 * np.pi for turn in (-1, 0, 1)])
         assert not (((wrapped >= low) & (wrapped <= high)).any(axis=0)).all(axis=1).any()
+
+
+FEASIBLE = ("ur5e", (-50, -500, 20), (), ALONG, (), {})
+BEHIND = ("irb120", (-400, 60, 20), (), ((10, 55), (90, 5)), (), {})
+
+
+@pytest.mark.parametrize(
+    ("given", "is_feasible"),
+    [(FEASIBLE, True), (BEHIND, False), *((JOBS[number][:-1], False) for number in (9, 10, 11))],
+)
+def test_the_arm_check_does_not_depend_on_the_number_of_places_solved_at_once(given, is_feasible, monkeypatch):
+    """Places are solved many at once. A problem may be at the first of them, in their middle or at the last."""
+    cell, plan = job(*given)
+    made, joints = unchecked_program(split_into_loads(plan, BRUSH, cell), BRUSH, cell), joints_of(cell.arm)
+    continue_solutions, together = follow_joints._continue_solutions, follow_joints._advance_together
+    chunk, stops = [], set()
+
+    def note_stop(count):
+        if count < len(chunk) > 2:
+            stops.add({0: "first", len(chunk) - 1: "last"}.get(count, "middle"))
+        return count
+
+    def watched_continue(placed, postures, places):
+        chunk[:] = places
+        found = continue_solutions(placed, postures, places)
+        if found is None and any(posture.failure is None for posture in postures):
+            note_stop(0)
+        return found
+
+    def watched_together(*given):
+        return note_stop(together(*given))
+
+    monkeypatch.setattr(follow_joints, "_advance_together", lambda *_: 0)
+    one_by_one = follow(made, joints)
+    monkeypatch.setattr(follow_joints, "_continue_solutions", watched_continue)
+    monkeypatch.setattr(follow_joints, "_advance_together", watched_together)
+    for count in (*range(1, 13), 64):
+        monkeypatch.setattr(follow_joints, "CHUNK_PLACES", count)
+        found = follow(made, joints)
+        assert found.problems == one_by_one.problems
+        if is_feasible:
+            assert found.start_rad == pytest.approx(one_by_one.start_rad, abs=1e-9)
+    assert bool(one_by_one.problems) is not is_feasible
+    assert is_feasible or stops == {"first", "middle", "last"}
 
 
 def test_joint_rates_match_finite_differences():

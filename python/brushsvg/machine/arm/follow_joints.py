@@ -11,9 +11,9 @@ of the posture that comes furthest is reported.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import chain
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import chain, islice
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from ..tool_axes import between_deg, normalize, rotation_axes, turned_to
 from .inverse_kinematics import JointSolver, flange_rates, flange_rates_at, joint_frames_of, refine_angles
 
 MAX_PLACE_SPACING_MM = 5.0
+# Number of places that are solved at once. The results do not depend on it. With fewer places, the calls of numpy cost
+# time. With more places, Newton's steps start too far away from the last of them and do not reach them.
+CHUNK_PLACES = 64
 # Largest turn of a joint between two places. A smaller limit costs time, a larger one could miss a peak of speed.
 MAX_JOINT_STEP_RAD = np.radians(6.0)
 # A joint that turns by MAX_JOINT_STEP_RAD within a smaller step of the tip and turn of the tool is at a singularity.
@@ -75,19 +78,26 @@ class FollowedProgram:
 
 @dataclass(frozen=True)
 class _Solutions:
-    """All solutions for a place, and the turn of the joints there.
+    """Joint angles for n places, k solutions each, and what the arm does there.
 
-    angles_rad: (k, 6) joint angles of each solution.
-    rates: (k, 6, 6) turn of each joint for each mm and rad of the tool.
+    angles_rad: (n, k, 6) joint angles of each solution.
+    speeds_deg_s: (n, k, 6) largest speed of each joint in the moves around the place.
+    most: (n, k) largest turn of any joint for each mm [rad/mm].
+    sides: (n, k) side of all singularities. Between two solutions on different sides there is a singularity.
+    lowest_mm: (n, k) height of the lowest joint above the table, or in front of a wall.
+    is_wall: whether the paper is on a wall.
     """
 
     angles_rad: np.ndarray
-    rates: np.ndarray
-    most: np.ndarray  # (k,) largest turn of any joint for each mm [rad/mm]
-    # (k,) side of all singularities. Between two solutions on different sides there is a singularity.
+    speeds_deg_s: np.ndarray
+    most: np.ndarray
     sides: np.ndarray
-    lowest_mm: np.ndarray  # (k,) height of the lowest joint above the table, or in front of a wall
-    is_wall: bool  # the paper is on a wall
+    lowest_mm: np.ndarray
+    is_wall: bool
+
+    def __getitem__(self, rows) -> _Solutions:
+        arrays = (self.angles_rad, self.speeds_deg_s, self.most, self.sides, self.lowest_mm)
+        return _Solutions(*(each[rows] for each in arrays), self.is_wall)
 
 
 @dataclass
@@ -97,11 +107,56 @@ class _Posture:
     least_rad: np.ndarray
     greatest_rad: np.ndarray
     calm_rad: np.ndarray  # the last joint angles that were clear of singularities
+    side: float
     most: float = 0.0
-    side: float = 0.0
     failure: Notice | None = None
     failed_at: int = -1
     failed: Place | None = None
+
+
+@dataclass(frozen=True)
+class _PlacedArm:
+    """An arm with its tool, and the paper in front of it.
+
+    frame: (4, 4) pose of the paper's frame in the robot's frame.
+    tilts: whether the brush is tilted anywhere.
+    """
+
+    joints: JointSolver
+    cell: Cell
+    frame: np.ndarray
+    tilts: bool
+
+    @property
+    def arm(self) -> Arm:
+        return self.joints.arm
+
+    def solve(self, place: Place) -> _Solutions:
+        """Find all solutions for a place, (1, k)."""
+        angles = self.joints.solutions(self.flanges([place])[0])[None]
+        return self.rate(angles, joint_frames_of(self.arm, angles), [place])
+
+    def rate(self, angles: np.ndarray, joint_frames: np.ndarray, places: list[Place]) -> _Solutions:
+        """Compute what the arm does at angles (n, k, 6) with joints at joint_frames (n, k, 7, 4, 4)."""
+        jacobian = flange_rates_at(joint_frames, np.array([place.robot_mm for place in places])[:, None])
+        turns = _invert_jacobian(jacobian)
+        speeds = [
+            np.degrees(np.abs(place.velocities @ turn.swapaxes(-1, -2)).max(axis=-2, initial=0.0))
+            for place, turn in zip(places, turns, strict=True)
+        ]
+        fastest = np.sqrt((turns[..., :3] ** 2).sum(axis=-1)).max(axis=-1, initial=0.0)
+        sides, lowest_mm = np.sign(np.linalg.det(jacobian)), lowest_joint_mm(joint_frames, self.frame)
+        return _Solutions(angles, np.array(speeds), fastest, sides, lowest_mm, _is_wall(self.frame))
+
+    def flanges(self, places: list[Place]) -> np.ndarray:
+        """Return the flange's poses (n, 4, 4) for places, in the robot's frame."""
+        upright = self.frame[:3, :3] @ upright_tool_rotation(self.cell.tool.spin_deg)
+        tips = np.tile(np.eye(4), (len(places), 1, 1))
+        tips[:, :3, :3] = upright
+        if self.tilts:
+            tips[:, :3, :3] = turned_to(np.array([place.axis for place in places]) @ self.frame[:3, :3].T, upright)
+        tips[:, :3, 3] = [place.robot_mm for place in places]
+        return tips @ np.linalg.inv(frame_of_pose(self.cell.tool.tcp_mm, self.cell.tool.rotation_deg))
 
 
 def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
@@ -124,57 +179,35 @@ def follow(program: Program, joints: JointSolver, to_the_end: bool = True) -> Fo
     How the arm gets to the first place is not known and not checked.
     to_the_end: whether to continue when no posture is left, because a place out of all reach is a better reason.
     """
-    cell, arm, frame = program.cell, joints.arm, program.robot_from_frame
-    flange_from_tip = np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
-    upright = frame[:3, :3] @ upright_tool_rotation(cell.tool.spin_deg)
-
-    def flange(place: Place) -> np.ndarray:
-        tip = np.eye(4)
-        tip[:3, :3] = turned_to(frame[:3, :3] @ place.axis, upright) if program.tilts else upright
-        tip[:3, 3] = place.robot_mm
-        return tip @ flange_from_tip
-
-    def solve(place: Place) -> _Solutions:
-        angles = joints.solutions(flange(place))
-        return _rate_solutions(angles, joint_frames_of(arm, angles), place, frame)
-
-    postures: list[_Posture] | None = None
-    before = None
-    for number, place in enumerate(places_of_program(program)):
-        solutions = (_continue_solutions(arm, postures, flange(place), place, frame) if postures else None) or solve(
-            place
-        )
-        if not len(solutions.angles_rad):
-            return FollowedProgram((_reach_notice(place, arm),), None)
-        if postures is None:
-            first_angles = solutions.angles_rad
-            if arm.posture_deg:
-                turns_rad = np.abs(_joint_turns_rad(np.radians(arm.posture_deg), first_angles)).max(axis=1)
-                first_angles = first_angles[[(turns_rad + 9.0 * ~within_limits(arm, first_angles)).argmin()]]
-            postures = [_Posture(*(angles.copy() for _ in range(5))) for angles in first_angles]
-        for posture in postures:
-            if posture.failure is None:
-                _advance_posture(posture, before, place, solutions, solve, arm)
-                posture.failed_at, posture.failed = number, place
-            elif _may_have_flipped(posture, place.robot_mm):
-                _note_flip(posture, solutions, arm)
-        before = place
-        if not to_the_end and all(posture.failure for posture in postures):
-            break
+    placed = _PlacedArm(joints, program.cell, program.robot_from_frame, program.tilts)
+    arm, stream = joints.arm, places_of_program(program)
+    postures: list[_Posture] = []
+    places: list[Place] = []
+    before, number = None, 0
+    while places := [*places, *islice(stream, CHUNK_PLACES - len(places))]:
+        solutions = _continue_solutions(placed, postures, places)
+        count = 0 if solutions is None else _advance_together(arm, postures, solutions)
+        if not count:
+            place, count = places[0], 1
+            solutions = placed.solve(place) if solutions is None else solutions[:1]
+            if not solutions.angles_rad.size:
+                return FollowedProgram((_reach_notice(place, arm),), None)
+            postures = postures or _start_postures(arm, solutions)
+            for posture in postures:
+                if posture.failure is None:
+                    _advance_posture(posture, before or place, place, solutions, placed)
+                    posture.failed_at, posture.failed = number, place
+                elif _may_have_flipped(posture, place.robot_mm):
+                    _note_flip(posture, solutions, arm)
+            if not to_the_end and all(posture.failure for posture in postures):
+                break
+        before, number, places = places[count - 1], number + count, places[count:]
     if not postures:
         return FollowedProgram((), None)
     if feasible := [posture.start_rad for posture in postures if posture.failure is None]:
         elbows_mm = joint_frames_of(arm, np.array(feasible))[:, ELBOW_JOINT, 2, 3]
         return FollowedProgram((), feasible[int(np.round(elbows_mm, 3).argmax())])
     return FollowedProgram((max(postures, key=lambda each: each.failed_at).failure,), None)
-
-
-def _rate_solutions(angles: np.ndarray, joint_frames: np.ndarray, place: Place, frame: np.ndarray) -> _Solutions:
-    jacobian = flange_rates_at(joint_frames, place.robot_mm)
-    turns = _invert_jacobian(jacobian)
-    fastest = np.sqrt((turns[..., :3] ** 2).sum(axis=-1)).max(axis=-1, initial=0.0)
-    sides, lowest_mm = np.sign(np.linalg.det(jacobian)), lowest_joint_mm(joint_frames, frame)
-    return _Solutions(angles, turns, fastest, sides, lowest_mm, _is_wall(frame))
 
 
 def lowest_joint_mm(joint_frames: np.ndarray, frame: np.ndarray) -> np.ndarray:
@@ -198,24 +231,63 @@ def _is_wall(frame: np.ndarray) -> bool:
     return normal_tilt_deg(frame) >= MIN_WALL_TILT_DEG
 
 
-def _continue_solutions(
-    arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Place, frame: np.ndarray
-) -> _Solutions | None:
-    """Continue each posture that has not failed to the next place.
+def _start_postures(arm: Arm, solutions: _Solutions) -> list[_Posture]:
+    """Start a posture at each solution for the first place, or only at the one nearest to the cell's posture."""
+    angles, sides = solutions.angles_rad[0], solutions.sides[0]
+    if arm.posture_deg:
+        turns_rad = np.abs(_joint_turns_rad(np.radians(arm.posture_deg), angles)).max(axis=1)
+        nearest = (turns_rad + 9.0 * ~within_limits(arm, angles)).argmin()
+        angles, sides = angles[[nearest]], sides[[nearest]]
+    return [_Posture(*(each.copy() for _ in range(5)), side) for each, side in zip(angles, sides, strict=True)]
 
-    Newton's steps start from the posture's last angles. Returns None if all angles for the place must be searched: a
-    posture does not converge nearby, or has just passed a singularity.
+
+def _continue_solutions(placed: _PlacedArm, postures: list[_Posture], places: list[Place]) -> _Solutions | None:
+    """Continue each posture that has not failed to the next places, (n, k).
+
+    Newton's steps start from the posture's last angles. n is the number of places up to the first one for which all
+    angles must be searched, because a posture does not converge nearby, or has just passed a singularity. Returns None
+    if this is the first place.
     """
-    if any(_may_have_flipped(posture, place.robot_mm) for posture in postures):
+    previous = np.array([posture.here_rad for posture in postures if posture.failure is None])
+    if not len(previous):
         return None
-    angles_before = [posture.here_rad for posture in postures if posture.failure is None]
-    if not angles_before:
+    robot_mm = np.array([place.robot_mm for place in places])
+    may_have_flipped = np.any([_may_have_flipped(posture, robot_mm) for posture in postures], axis=0)
+    places = places[: _count_first(~may_have_flipped)]
+    if not places:
         return None
-    previous = np.array(angles_before)
-    angles, joint_frames = refine_angles(arm, previous, flange, MAX_JOINT_STEP_RAD)
-    if joint_frames is None or np.abs(angles - previous).max() > MAX_JOINT_STEP_RAD:
-        return None
-    return _rate_solutions(angles, joint_frames, place, frame)
+    most_step_rad = MAX_JOINT_STEP_RAD * np.arange(1, len(places) + 1)[:, None, None]
+    angles, joint_frames, has_converged = refine_angles(
+        placed.arm, previous, placed.flanges(places)[:, None], most_step_rad
+    )
+    turns_rad = np.abs(np.diff(angles, axis=0, prepend=previous[None])).max(axis=-1)
+    count = _count_first((has_converged & (turns_rad <= MAX_JOINT_STEP_RAD)).all(axis=1))
+    return placed.rate(angles[:count], joint_frames[:count], places[:count]) if count else None
+
+
+def _count_first(flags: np.ndarray) -> int:
+    """Return how many of the flags (n,) are true before the first one that is false."""
+    return int(np.logical_and.accumulate(flags).sum())
+
+
+def _advance_together(arm: Arm, postures: list[_Posture], solutions: _Solutions) -> int:
+    """Advance all postures that have not failed, along the first places at which none of them breaks a rule.
+
+    solutions: (n, k) the continued solutions of these k postures.
+
+    Returns the number of places. The posture may turn to another solution, or break a rule, at the place that follows.
+    """
+    following = [posture for posture in postures if posture.failure is None]
+    angles = solutions.angles_rad
+    before = np.concatenate([[[posture.here_rad for posture in following]], angles[:-1]])
+    turns_rad = np.abs(_joint_turns_rad(before[:, :, None], angles[:, None])).max(axis=-1)
+    is_nearest = turns_rad.argmin(axis=-1) == np.arange(len(following))
+    breaks_rule = np.any(list(_broken_rules(arm, following, solutions).values()), axis=0)
+    count = _count_first((is_nearest & ~breaks_rule).all(axis=1))
+    if count:
+        for number, posture in enumerate(following):
+            _move_posture(posture, solutions[:count, number])
+    return count
 
 
 def within_limits(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
@@ -277,54 +349,77 @@ def _places_along(name, points, axes, speeds, ends, frame, is_first: bool) -> It
     neighbours = np.r_[sampled[:1], sampled, sampled[-1:]]
     first = np.maximum(np.searchsorted(along, neighbours[:-2], "right") - 1, 0)
     last = np.searchsorted(along, neighbours[2:], "left")
-    for k, at in enumerate(sampled):
-        if k == 0 and not is_first:
-            continue  # the place where the previous section ended
-        paper_mm, robot_mm = (np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot))
-        axis = (
-            UPRIGHT_AXIS
-            if axes is None
-            else normalize(np.array([np.interp(at, along, component) for component in axes.T]))
-        )
-        yield Place(name, paper_mm, robot_mm, velocities[first[k] : last[k]], axis)
+    at = np.column_stack([np.interp(sampled, along, column) for column in np.hstack([points, robot]).T])
+    tilted = np.tile(UPRIGHT_AXIS, (len(sampled), 1))
+    if axes is not None:
+        tilted = normalize(np.column_stack([np.interp(sampled, along, component) for component in axes.T]))
+    # A section begins at the place where the previous one ended.
+    for k in range(0 if is_first else 1, len(sampled)):
+        yield Place(name, at[k, :3], at[k, 3:], velocities[first[k] : last[k]], tilted[k])
 
 
-def _advance_posture(
-    posture: _Posture, before: Place | None, place: Place, solutions: _Solutions, solve, arm: Arm
-) -> None:
+def _advance_posture(posture: _Posture, before: Place, place: Place, solutions: _Solutions, placed: _PlacedArm) -> None:
     """Advance a posture to the next place, or set its failure.
 
     The path is halved where a joint would turn by more than MAX_JOINT_STEP_RAD.
+
+    solutions: (1, k) the solutions for the place.
     """
-    turns = _joint_turns_rad(posture.here_rad, solutions.angles_rad)
+    arm = placed.arm
+    turns = _joint_turns_rad(posture.here_rad, solutions.angles_rad[0])
     turns_rad = np.abs(turns).max(axis=1)
     nearest = int(turns_rad.argmin())
-    if before is not None and turns_rad[nearest] > MAX_JOINT_STEP_RAD:
+    if turns_rad[nearest] > MAX_JOINT_STEP_RAD:
         same_axis = between_deg(place.axis, before.axis) < MIN_TURN_DEG
         if same_axis and np.linalg.norm(place.robot_mm - before.robot_mm) < MIN_STEP_MM:
-            posture.failure = _near_singularity_notice(place, arm, posture.most, posture.here_rad)
+            posture.failure = _near_singularity_notice(place, arm, posture.here_rad, posture.most)
             return
         middle = (before.paper_mm + place.paper_mm) / 2, (before.robot_mm + place.robot_mm) / 2
         half = Place(place.name, *middle, place.velocities, normalize(before.axis + place.axis))
-        half_solutions = solve(half)
-        if not len(half_solutions.angles_rad):
+        half_solutions = placed.solve(half)
+        if not half_solutions.angles_rad.size:
             posture.failure = _reach_notice(half, arm)
             return
-        _advance_posture(posture, before, half, half_solutions, solve, arm)
+        _advance_posture(posture, before, half, half_solutions, placed)
         if posture.failure is None:
-            _advance_posture(posture, half, place, solutions, solve, arm)
+            _advance_posture(posture, half, place, solutions, placed)
         return
-    posture.here_rad = posture.here_rad + turns[nearest]
-    posture.most = solutions.most[nearest]
-    if before is not None and solutions.sides[nearest] != posture.side:
-        posture.failure = _crossed_singularity_notice(place, arm)
-        return
-    posture.side = solutions.sides[nearest]
-    posture.failure = _find_failure(posture, place, solutions.rates[nearest], arm)
-    if posture.failure is None and not arm.posture_deg and solutions.lowest_mm[nearest] < 0:
-        side = "behind the paper" if solutions.is_wall else "below the table, lower than the paper and its base"
-        sentence = f"{_near(place)} a joint of arm {arm.name} would be {-solutions.lowest_mm[nearest]:.0f} mm {side}"
-        posture.failure = Notice(place.name, sentence, code="joint-below-table")
+    reached = replace(solutions[:, [nearest]], angles_rad=(posture.here_rad + turns[nearest])[None, None])
+    for write_notice, is_broken in _broken_rules(arm, [posture], reached).items():
+        if is_broken.any():
+            posture.failure = write_notice(place, arm, posture, reached[0, 0])
+            return
+    _move_posture(posture, reached[:, 0])
+
+
+def _broken_rules(arm: Arm, postures: list[_Posture], solutions: _Solutions) -> dict[Callable, np.ndarray]:
+    """Return which rules k postures break at their solutions (n, k) for the next places.
+
+    Each rule has the function that reports it, and the places and postures (n, k) that break it.
+    """
+    angles = solutions.angles_rad
+    least = np.minimum.accumulate([[posture.least_rad for posture in postures], *angles])[1:]
+    greatest = np.maximum.accumulate([[posture.greatest_rad for posture in postures], *angles])[1:]
+    # Without speeds in the cell, no speed is checked.
+    fastest = np.array(arm.speeds_deg_s or np.inf)
+    return {
+        _crossed_singularity_notice: solutions.sides != [posture.side for posture in postures],
+        _limit_notice: _leaves_limits(arm, least, greatest)[0].any(axis=-1),
+        _rate_notice: solutions.most > MAX_JOINT_RATE_RAD_MM,
+        _speed_notice: (solutions.speeds_deg_s / fastest > 1 + 1e-9).any(axis=-1),
+        _table_notice: (solutions.lowest_mm < 0) & (not arm.posture_deg),
+    }
+
+
+def _move_posture(posture: _Posture, solutions: _Solutions) -> None:
+    """Move a posture along its solutions (n,) for the next places, which break no rule."""
+    angles = solutions.angles_rad
+    posture.least_rad = np.minimum(posture.least_rad, angles.min(axis=0))
+    posture.greatest_rad = np.maximum(posture.greatest_rad, angles.max(axis=0))
+    posture.here_rad, posture.most = angles[-1], solutions.most[-1]
+    is_calm = solutions.most <= CALM_JOINT_RATE_RAD_MM
+    if is_calm.any():
+        posture.calm_rad = angles[is_calm][-1]
 
 
 def _joint_turns_rad(here_rad: np.ndarray, solutions: np.ndarray) -> np.ndarray:
@@ -347,29 +442,6 @@ def _invert_jacobian(jacobian: np.ndarray) -> np.ndarray:
         return np.linalg.inv(jacobian + 1e-9 * np.eye(6))
 
 
-def _find_failure(posture: _Posture, place: Place, turns: np.ndarray, arm: Arm) -> Notice | None:
-    angles = posture.here_rad
-    least, greatest = np.minimum(posture.least_rad, angles), np.maximum(posture.greatest_rad, angles)
-    beyond, _ = _leaves_limits(arm, least, greatest)
-    if beyond.any():
-        return _limit_notice(place, arm, int(beyond.argmax()), posture)
-    posture.least_rad, posture.greatest_rad = least, greatest
-    if posture.most > MAX_JOINT_RATE_RAD_MM:
-        return _near_singularity_notice(place, arm, posture.most, angles)
-    if posture.most <= CALM_JOINT_RATE_RAD_MM:
-        posture.calm_rad = angles
-    if len(place.velocities) and arm.speeds_deg_s:
-        fastest = np.degrees(np.abs(place.velocities @ turns.T).max(axis=0))
-        over = fastest / np.array(arm.speeds_deg_s)
-        if over[worst := int(over.argmax())] > 1 + 1e-9:
-            sentence = (
-                f"{_near(place)} {_joint(arm, worst)} would turn at {fastest[worst]:.0f} degrees/s, outside the range "
-                f"[0, {arm.speeds_deg_s[worst]:g}] degrees/s of arm {arm.name}"
-            )
-            return Notice(place.name, sentence, code="joint-too-fast", about=str(joint_number(arm, worst)))
-    return None
-
-
 def _leaves_limits(arm: Arm, least_rad: np.ndarray, greatest_rad: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which joints leave their limits, and the whole turns of the others.
 
@@ -382,11 +454,14 @@ def _leaves_limits(arm: Arm, least_rad: np.ndarray, greatest_rad: np.ndarray) ->
     return greatest_rad + 2 * np.pi * turns > high + 1e-9, turns
 
 
-def _limit_notice(place: Place, arm: Arm, joint: int, posture: _Posture) -> Notice:
+def _limit_notice(place: Place, arm: Arm, posture: _Posture, reached: _Solutions) -> Notice:
+    angles = reached.angles_rad
+    beyond, _ = _leaves_limits(arm, np.minimum(posture.least_rad, angles), np.maximum(posture.greatest_rad, angles))
+    joint = int(beyond.argmax())
     low, high = arm.limits_deg[joint]
     # These whole turns kept the joint within its limits before this place.
     _, turns = _leaves_limits(arm, posture.least_rad, posture.greatest_rad)
-    angle = np.degrees(posture.here_rad[joint]) + 360 * turns[joint]
+    angle = np.degrees(angles[joint]) + 360 * turns[joint]
     if not angle < low and angle - high > low - (angle - 360):  # at the first place, report the nearer limit
         angle -= 360
     sentence = (
@@ -396,18 +471,37 @@ def _limit_notice(place: Place, arm: Arm, joint: int, posture: _Posture) -> Noti
     return Notice(place.name, sentence, code="joint-limit", about=str(joint_number(arm, joint)))
 
 
+def _speed_notice(place: Place, arm: Arm, posture: _Posture, reached: _Solutions) -> Notice:
+    worst = int((reached.speeds_deg_s / np.array(arm.speeds_deg_s)).argmax())
+    sentence = (
+        f"{_near(place)} {_joint(arm, worst)} would turn at {reached.speeds_deg_s[worst]:.0f} degrees/s, outside the "
+        f"range [0, {arm.speeds_deg_s[worst]:g}] degrees/s of arm {arm.name}"
+    )
+    return Notice(place.name, sentence, code="joint-too-fast", about=str(joint_number(arm, worst)))
+
+
+def _table_notice(place: Place, arm: Arm, posture: _Posture, reached: _Solutions) -> Notice:
+    side = "behind the paper" if reached.is_wall else "below the table, lower than the paper and its base"
+    sentence = f"{_near(place)} a joint of arm {arm.name} would be {-reached.lowest_mm:.0f} mm {side}"
+    return Notice(place.name, sentence, code="joint-below-table")
+
+
 def _reach_notice(place: Place, arm: Arm) -> Notice:
     at = ", ".join(f"{value:.1f}" for value in place.robot_mm)
     sentence = f"{_near(place)} the brush is out of reach of arm {arm.name}: ({at}) mm in the robot's frame"
     return Notice(place.name, sentence, code="arm-out-of-reach")
 
 
-def _crossed_singularity_notice(place: Place, arm: Arm) -> Notice:
+def _crossed_singularity_notice(place: Place, arm: Arm, posture: _Posture, reached: _Solutions) -> Notice:
     sentence = f"{_near(place)} arm {arm.name} passes through a singularity, where its joints turn too fast or it stops"
     return Notice(place.name, sentence, code="singularity")
 
 
-def _near_singularity_notice(place: Place, arm: Arm, most: float, joints_rad: np.ndarray) -> Notice:
+def _rate_notice(place: Place, arm: Arm, posture: _Posture, reached: _Solutions) -> Notice:
+    return _near_singularity_notice(place, arm, reached.angles_rad, float(reached.most))
+
+
+def _near_singularity_notice(place: Place, arm: Arm, joints_rad: np.ndarray, most: float) -> Notice:
     worst = int(np.linalg.norm(joint_rates(arm, joints_rad, place.robot_mm), axis=1).argmax())
     sentence = (
         f"{_near(place)} arm {arm.name} comes near a singularity: {_joint(arm, worst)} would turn by "
@@ -416,12 +510,12 @@ def _near_singularity_notice(place: Place, arm: Arm, most: float, joints_rad: np
     return Notice(place.name, sentence, code="singularity", about=str(joint_number(arm, worst)))
 
 
-def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
-    """Return whether a place within FLIP_SEARCH_MM behind the singularity can show a wrist flip."""
+def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> np.ndarray:
+    """Return which places (..., 3) within FLIP_SEARCH_MM behind the singularity can show a wrist flip, (...)."""
     failure = posture.failure
     if failure is None or failure.code != "singularity":
-        return False
-    return float(np.linalg.norm(robot_mm - posture.failed.robot_mm)) <= FLIP_SEARCH_MM
+        return np.zeros(robot_mm.shape[:-1], dtype=bool)
+    return np.linalg.norm(robot_mm - posture.failed.robot_mm, axis=-1) <= FLIP_SEARCH_MM
 
 
 def _note_flip(posture: _Posture, solutions: _Solutions, arm: Arm) -> None:
@@ -429,12 +523,13 @@ def _note_flip(posture: _Posture, solutions: _Solutions, arm: Arm) -> None:
 
     Only solutions that are clear of the singularity again, and bend the wrist as before, are compared.
     """
-    turns = _joint_turns_rad(posture.calm_rad, solutions.angles_rad)
-    bends = np.sin(solutions.angles_rad[:, WRIST_BEND_JOINT]) * np.sin(posture.calm_rad[WRIST_BEND_JOINT])
+    angles = solutions.angles_rad[0]
+    turns = _joint_turns_rad(posture.calm_rad, angles)
+    bends = np.sin(angles[:, WRIST_BEND_JOINT]) * np.sin(posture.calm_rad[WRIST_BEND_JOINT])
     is_flip = (
         (np.abs(turns[:, :3]).max(axis=1) < MAX_SAME_ARM_TURN_RAD)
         & (bends > 0)
-        & (solutions.most <= CALM_JOINT_RATE_RAD_MM)
+        & (solutions.most[0] <= CALM_JOINT_RATE_RAD_MM)
     )
     for turn in turns[is_flip]:
         joint = WRIST_TWIST_JOINTS[int(np.abs(turn[WRIST_TWIST_JOINTS]).argmax())]

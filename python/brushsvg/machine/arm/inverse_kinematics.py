@@ -88,7 +88,7 @@ def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.nda
 
     The units are mm/rad and rad/rad.
 
-    tip_mm: (3,) place of the tip, which the flange holds, in the robot's frame.
+    tip_mm: (..., 3) place of the tip, which the flange holds, in the robot's frame.
     """
     return flange_rates_at(joint_frames_of(arm, joints_rad), tip_mm)
 
@@ -98,7 +98,7 @@ def flange_rates_at(joint_frames: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
 
     joint_frames: (..., n + 1, 4, 4) frames, see joint_frames_of.
     """
-    axes, arms = joint_frames[..., :-1, :3, 2], tip_mm - joint_frames[..., :-1, :3, 3]
+    axes, arms = joint_frames[..., :-1, :3, 2], tip_mm[..., None, :] - joint_frames[..., :-1, :3, 3]
     (u, v, w), (x, y, z) = np.moveaxis(axes, -1, 0), np.moveaxis(arms, -1, 0)
     return np.stack([v * z - w * y, w * x - u * z, u * y - v * x, u, v, w], axis=-2)
 
@@ -149,36 +149,35 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[..., np.ndarray]:
 
 
 def refine_angles(
-    arm: Arm, angles: np.ndarray, flange: np.ndarray, most_step_rad: float
-) -> tuple[np.ndarray, np.ndarray | None]:
-    """Refine joint angles for a flange pose by Newton's steps.
+    arm: Arm, angles: np.ndarray, flanges: np.ndarray, most_step_rad: float | np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Refine joint angles for flange poses by Newton's steps.
 
-    angles: (k, 6) angles that put the flange near the pose.
-    flange: (4, 4) the pose.
-    most_step_rad: longest step of a joint. A longer step is left out.
+    angles: (..., 6) angles that put the flange near the poses.
+    flanges: (..., 4, 4) the poses. Their leading axes are broadcast against those of the angles.
+    most_step_rad: longest step of a joint, a number or (..., 1). A longer step is left out.
 
-    Returns the angles, and the frames of the joints if all solutions have converged, else None.
+    Returns the angles (..., 6), the frames of the joints (..., 7, 4, 4), and which angles have converged, (...).
     """
+    angles = np.broadcast_to(angles, (*np.broadcast_shapes(angles.shape[:-1], flanges.shape[:-2]), angles.shape[-1]))
     for number in range(MAX_NEWTON_STEPS + 1):
         joint_frames = joint_frames_of(arm, angles)
-        rates = flange_rates_at(joint_frames, flange[:3, 3])
-        turned = flange[:3, :3] @ joint_frames[:, -1, :3, :3].swapaxes(-1, -2)
-        turn = [turned[:, k - 1, k - 2] - turned[:, k - 2, k - 1] for k in (0, 1, 2)]
-        error = np.concatenate([flange[:3, 3] - joint_frames[:, -1, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
-        if (
-            np.abs(error).max(initial=0.0) < NEWTON_TOLERANCE
-            and np.abs(joint_frames[:, -1] - flange).max(initial=0.0) < NEWTON_TOLERANCE
-        ):
-            return angles, joint_frames
-        if number == MAX_NEWTON_STEPS:
+        reached = joint_frames[..., -1, :, :]
+        turned = flanges[..., :3, :3] @ reached[..., :3, :3].swapaxes(-1, -2)
+        turn = [turned[..., k - 1, k - 2] - turned[..., k - 2, k - 1] for k in (0, 1, 2)]
+        error = np.concatenate([flanges[..., :3, 3] - reached[..., :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
+        has_converged = (np.abs(error).max(axis=-1) < NEWTON_TOLERANCE) & (
+            np.abs(reached - flanges).max(axis=(-2, -1)) < NEWTON_TOLERANCE
+        )
+        if number == MAX_NEWTON_STEPS or has_converged.all():
             break
         try:
-            step = np.linalg.solve(rates, error[..., None])[..., 0]
+            step = np.linalg.solve(flange_rates_at(joint_frames, flanges[..., :3, 3]), error[..., None])[..., 0]
         except np.linalg.LinAlgError:  # exactly at a singularity
             break
         longest = np.abs(step).max(axis=-1, keepdims=True)
         angles = angles + np.where(longest < most_step_rad, step, 0.0)
-    return angles, None
+    return angles, joint_frames, has_converged
 
 
 def _make_solver(solve, ssik_from_robot: np.ndarray, ssik_flange_offset: np.ndarray, theta: np.ndarray):
