@@ -21,6 +21,7 @@ if not hasattr(core, "fit_marks"):
 
 from brushsvg import find_brush  # noqa: E402
 from brushsvg.calibration.marks.from_marks import brush_of  # noqa: E402
+from brushsvg.calibration.prior import update_report  # noqa: E402
 from brushsvg.calibration.prior.from_prior import marks_with_prior, update_brush  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 from brushsvg.comparison import learned_brush  # noqa: E402
@@ -182,20 +183,40 @@ def test_one_depth_gives_little_information_about_others(tmp_path, capsys):
         assert is_now[3] < 0.6 * was[3] and is_now[-1] > 2 * is_now[3], (law, was, is_now)
 
 
-def test_a_width_that_bends_at_shallow_depths_does_not_fall_at_greater_ones():
-    """Marks down to 2 mm, whose width bends as strongly as it can, update a brush of 5 mm."""
-    known, depth = find_brush("liner-1"), 2.0
-    half = known.half_width(depth) * np.array([0.0, 2 / depth, -0.7 / depth**2]) / 1.3
-    truth = painter.TrueBrush(5.0, np.array([11.0, 1.0]), GAP, half, WIDEST, FRONT)
+def updated_by_arcs(known, depth, lag, half):
+    """Return a brush, updated by arcs and corners down to a depth [mm]. lag, half: true laws [mm], ascending powers."""
+    truth = painter.TrueBrush(known.depth_range_mm[1], lag, GAP, half, WIDEST, FRONT)
     strokes = [(name, poses) for name, poses in painter.chart_strokes(depth, 3) if name.startswith(("arc", "angular"))]
     sheet = painter.paint(np.random.default_rng(1), truth, strokes, FAULTS)
     rings = {name: outline for name, _, outline in sheet.marks}
     marks = [core.PaintedMark(name, poses, rings[name]) for name, poses in strokes]
-    updated = update_brush(marks_with_prior(marks), known, "own")
+    return update_brush(marks_with_prior(marks), known, "own")
+
+
+def test_a_width_that_bends_at_shallow_depths_does_not_fall_at_greater_ones():
+    """Marks down to 2 mm, whose width bends as strongly as it can, update a brush of 5 mm."""
+    known, depth = find_brush("liner-1"), 2.0
+    half = known.half_width(depth) * np.array([0.0, 2 / depth, -0.7 / depth**2]) / 1.3
+    updated = updated_by_arcs(known, depth, np.array([11.0, 1.0]), half)
     assert updated.is_learned("half_width")
     depths = np.linspace(0.2, 5.0, 25)
     law = np.array([updated.brush.half_width(d) for d in depths])
     assert np.all(np.diff(law) > -1e-9)
+
+
+def test_a_lag_that_falls_beyond_the_painted_depths_is_a_reservation():
+    """Marks down to 3 mm, whose lag bends there, update a brush of 5 mm. Its lag then falls at greater depths."""
+    known = find_brush("liner-1")
+    half = np.array([0.0, *known.half_width.coefficients[1:]])
+    bent = known.lag(3.0) * np.array([0.3, 1.4 / 3.0, -0.7 / 3.0**2])
+    updated = updated_by_arcs(known, 3.0, bent, half)
+    assert [each for each in core.remarks(updated.brush) if each.code == "law-falls"]
+    depths = np.linspace(*updated.brush.depth_range_mm, 401)
+    highest = depths[np.argmax(updated.brush.lag(depths))]
+    reason = f"the lag falls from depth {highest:.1f} to 5.0 mm: paint curved strokes at these depths"
+    assert update_report.report(updated).verdict.startswith(f"usable, but {reason}")
+    straight = updated_by_arcs(known, 3.0, np.array(known.lag.coefficients), half)
+    assert update_report.report(straight).verdict == "good"
 
 
 def test_a_photograph_of_another_job_is_refused(tmp_path, capsys):
