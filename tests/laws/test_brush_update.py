@@ -12,7 +12,7 @@ import painter
 import photograph
 import pytest
 from diagnostics import in_json, is_reported
-from numpy.polynomial.polynomial import polyval
+from numpy.polynomial.polynomial import polyfit, polyval
 from photograph import BLUE, INK, Camera
 
 core = pytest.importorskip("brushsvg._core")
@@ -29,7 +29,7 @@ from brushsvg.comparison.job_marks import job_marks  # noqa: E402
 from brushsvg.comparison.job_page import job_page  # noqa: E402
 from brushsvg.jobs.json_files import read_plan  # noqa: E402
 from brushsvg.model.confidence import LAWS, law_band  # noqa: E402
-from brushsvg.model.library import save_brush  # noqa: E402
+from brushsvg.model.library import brush_like, save_brush  # noqa: E402
 
 HEAD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" viewBox="0 0 150 90">
 <title>word</title><g fill="none" stroke="#000" stroke-linecap="round">"""
@@ -217,6 +217,19 @@ def test_a_lag_that_falls_beyond_the_painted_depths_is_a_reservation():
     assert update_report.report(updated).verdict.startswith(f"usable, but {reason}")
     straight = updated_by_arcs(known, 3.0, np.array(known.lag.coefficients), half)
     assert update_report.report(straight).verdict == "good"
+
+
+@pytest.mark.parametrize(
+    ("kind", "factor", "measured_mm"), [("known", 1.0, (1, 10)), ("known", 1.3, (0, 5)), ("assumed", 1.0, (0, 5))]
+)
+def test_a_prior_that_was_not_measured_or_is_contradicted_supports_no_depths(kind, factor, measured_mm):
+    """Marks down to 5 mm update a brush whose lag was measured from 1 to 10 mm, or only taken from such a brush."""
+    known = find_brush("round-6") if kind == "known" else brush_like("own", find_brush("round-6"))
+    lag = polyfit(DEPTHS, [known.lag(d) for d in DEPTHS], 3)
+    half = np.array([0.0, *polyfit(DEPTHS, [known.half_width(d) / d for d in DEPTHS], 1)])
+    updated = updated_by_arcs(known, 5.0, factor * lag, half)
+    assert updated.is_learned("lag") and (updated.wider.get("lag", 1.0) > 1.0) == (factor > 1.0)
+    assert updated.brush.lag.calibrated_mm == pytest.approx(measured_mm)
 
 
 def test_a_photograph_of_another_job_is_refused(tmp_path, capsys):

@@ -218,6 +218,6 @@ def test_margin_strokes_calibrate_the_lag_at_more_depths(desk):
     brush, plan = brushsvg.find_brush("auto-brush.json"), read_plan("auto-plan.json")
     deepest = max(-np.min(each.poses_mm[:, 2]) for each in plan.passes)
     assert learned["deepest_mm"]["lag"] == pytest.approx(deepest, abs=0.01)
-    assert brush.lag.calibrated_mm[1] == 8.0
+    assert brush.lag.calibrated_mm[1] == pytest.approx(deepest, abs=0.01)  # the marks contradict the typed lag
     assert is_calibrated(brush, 0.99 * deepest) and not is_calibrated(brush, 8.0)
     assert off["auto"] < 0.03 and off["auto"] < off["off"], off

@@ -119,7 +119,8 @@ def update_brush(
             covariance += np.outer(change, change)
     interval_ratios = _interval_ratios(known.widened(wider), covariance, known.laws, brush)
     changed = {law for law in LAWS if interval_ratios[law][0] < MAX_LEARNED_RATIO}
-    updated_brush = _merge_brush(brush, known, laws, covariance, changed, name, painted)
+    contradicted = {law for law, factor in wider.items() if factor > 1.0}
+    updated_brush = _merge_brush(brush, known, laws, covariance, changed, contradicted, name, painted)
     _core.check(updated_brush)
     return UpdatedBrush(updated_brush, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options)
 
@@ -280,8 +281,13 @@ def _interval_ratios(before: np.ndarray, after: np.ndarray, laws, brush) -> dict
     return out
 
 
-def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], name: str, painted: Painted):
-    """Return the brush with the laws that the marks determine; the other laws stay as they are."""
+def _merge_brush(
+    brush, known: KnownLaws, laws, covariance, learned: set[str], contradicted: set[str], name: str, painted: Painted
+):
+    """Return the brush with the laws that the marks determine; the other laws stay as they are.
+
+    contradicted: laws whose prior the marks contradict.
+    """
     if learned & {"half_width", "tip_to_widest"}:
         learned = learned | {"tip_to_widest"}  # it is stored in half widths
     updated_brush = brush_of(laws, name, brush.depth_range_mm, covariance)
@@ -291,7 +297,14 @@ def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], n
         setattr(
             updated_brush,
             law,
-            _choose_law(getattr(brush, law), getattr(updated_brush, law), law in learned, painted, brush.name),
+            _choose_law(
+                getattr(brush, law),
+                getattr(updated_brush, law),
+                law in learned,
+                law in contradicted,
+                painted,
+                brush.name,
+            ),
         )
     updated_brush.kind = brush.kind
     updated_brush.max_speed_mm_s = brush.max_speed_mm_s
@@ -300,7 +313,11 @@ def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], n
     updated_brush.extra = brush.extra
     updated_brush.footprints = brush.footprints
     updated_brush.paint = brush.paint
-    known_mm = {law: max(painted.deepest_mm, fitted_down_to_mm(brush, law)) for law in LAWS if law in learned}
+    known_mm = {
+        law: max(painted.deepest_mm, 0.0 if law in contradicted else fitted_down_to_mm(brush, law))
+        for law in LAWS
+        if law in learned
+    }
     before_mm = learned_of(brush).get("deepest_mm")
     before_mm = before_mm if isinstance(before_mm, dict) else {}
     new_mm = {law: round(depth, 3) for law, depth in known_mm.items() if np.isfinite(depth)}
@@ -312,10 +329,16 @@ def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], n
     return updated_brush
 
 
-def _choose_law(before, now, is_learned: bool, painted: Painted, prior: str):
+def _choose_law(before, now, is_learned: bool, is_contradicted: bool, painted: Painted, prior: str):
+    """Return a law with the range of depths that marks and prior support together.
+
+    Marks support all depths down to the deepest of them. The prior adds its own range, because the fit carries its
+    measurements on to the depths without marks. A prior that was assumed, or that the marks contradict, adds nothing.
+    """
     if not is_learned:
         return before
-    least, deepest = before.calibrated_mm or (0.0, 0.0)
+    is_measured = before.calibrated_mm and not (before.assumed or is_contradicted)
+    least, deepest = before.calibrated_mm if is_measured else (0.0, 0.0)
     return _core.Profile(
         now.coefficients,
         calibrated_mm=(least, max(deepest, painted.deepest_mm)),
