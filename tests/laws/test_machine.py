@@ -217,6 +217,21 @@ def test_an_exact_machine_is_recovered_as_exact():
     assert np.all(np.abs(error) < 1.5 * law_band(made.brush, "lag", depths)[0]), "more is open, and the band says so"
 
 
+@pytest.mark.parametrize(("parts", "certain"), [((), []), (("lean",), ["lean"])])
+def test_only_errors_that_the_marks_show_are_offered_to_the_cell(parts, certain):
+    """A table of lean was once offered for a machine without errors, with intervals that included 0."""
+    _, painted = painted_by(5, parts)
+    made = calibrate_marks(painted, "b", options=options_for(("lean", "axes", "tilt")))
+    found = machine_found.list_machine_numbers(made.fit, made.covariance, made.expected)
+    text = report(made).text(True)
+    assert ("[machine]" in text) == bool(certain) and ("cell file can correct" in text) == bool(certain)
+    assert ("show no error of the machine (lean, axes, tilt)" in text) == (not certain)
+    table = tomllib.loads(text[text.index("[machine]\n") :].partition("\n\n")[0])["machine"] if certain else {}
+    assert list(table) == [f"{part}_mm_per_mm" for part in certain]
+    left_out = [line for line in machine_found.describe_numbers(found) if "not significant" in line]
+    assert [line.partition(":")[0] for line in left_out] == [p for p in ("lean", "axes", "tilt") if p not in certain]
+
+
 @pytest.mark.parametrize("seed", [5, 6])
 def test_zero_lean_is_as_uncertain_as_a_real_lean(seed):
     """The absence of lean is known no better than a real lean.

@@ -68,13 +68,15 @@ def test_the_table_for_a_cell_marks_lines_without_effect_on_some_machines(name):
     refuse it.
     """
     cell = find_cell(name)
-    parts = ("lean", "axes", "tilt", "backlash")
-    options = _core.MarkOptions()
-    machine_found.request_machine_parts(options, parts)
     machine = SimpleNamespace(lean_mm_per_mm=(0.1, 0.0), scale=(1.01, 1.0), skew=0.0, tilt_mm_per_mm=(0.001, 0.0))
     fit = SimpleNamespace(machine=machine, height_mm=0.2, centre_mm=(0.0, 0.0))
-    found = [machine_found.Number("backlash", f"backlash in {axis}", 0.3, 0.1, "mm") for axis in "xy"]
-    head, *lines = machine_found.format_cell_table(fit, options, found)
+    found = [
+        machine_found.Number("lean", "lean in x", 0.1, 0.01, "mm per mm of depth"),
+        machine_found.Number("axes", "scale in x", 1.01, 0.001, ""),
+        machine_found.Number("tilt", "tilt in x", 0.001, 0.0001, "mm higher per mm"),
+        *(machine_found.Number("backlash", f"backlash in {axis}", 0.3, 0.1, "mm") for axis in "xy"),
+    ]
+    head, *lines = machine_found.format_cell_table(fit, found)
     remarks = {line.partition(" = ")[0]: line.partition("  # ")[2] for line in lines}
     assert head == "[machine]" and {"backlash_mm", "scale"} <= tomllib.loads("\n".join(lines)).keys()
     kinds = {

@@ -150,18 +150,46 @@ def _describe_number(number: Number) -> str:
 
 
 def describe_numbers(found: list[Number]) -> list[str]:
-    """Return a line for each number, and a line about a field that is not used."""
+    """Return a line for each number, and a line for each part that the table for the cell file leaves out."""
     lines = [_describe_number(number) for number in found]
     field = [number for number in found if number.part == "field"]
-    if (
-        field
-        and min(number.half for number in field)
-        > MAX_INTERVAL_PER_PRIOR * _core.interval_factor_95() * PARTS["field"][1]
-    ):
-        lines.append("field: these marks do not determine it; paint strokes all over the sheet")
-    elif field and not has_field(found):
-        lines.append("field: not significant, so the table for the cell file has none")
+    certain = list_certain_parts(found)
+    for part in dict.fromkeys(number.part for number in found if number.part not in certain):
+        if (
+            part == "field"
+            and min(number.half for number in field)
+            > MAX_INTERVAL_PER_PRIOR * _core.interval_factor_95() * PARTS["field"][1]
+        ):
+            lines.append("field: these marks do not determine it; paint strokes all over the sheet")
+        else:
+            lines.append(f"{part}: not significant, so the table for the cell file has none")
     return lines
+
+
+def describe_exact_machine(found: list[Number]) -> list[str]:
+    """Return a sentence if the requested parts of the machine have no error that the marks show."""
+    if not found or list_certain_parts(found):
+        return []
+    parts = ", ".join(dict.fromkeys(number.part for number in found))
+    return [f"the marks show no error of the machine ({parts}), so there is no table for the cell file"]
+
+
+def list_certain_parts(found: list[Number]) -> set[str]:
+    """Return the parts with a number whose 95 % interval excludes the value of an exact machine.
+
+    Backlash must also be large enough to be compensated, and a field has one test for all of its numbers.
+    """
+    certain = {
+        number.part
+        for number in found
+        if number.part in ("lean", "axes", "tilt") and abs(number.value - number.name.startswith("scale")) > number.half
+    }
+    certain |= {"backlash"} if any(map(_is_certain_backlash, found)) else set()
+    return certain | ({"field"} if has_field(found) else set())
+
+
+def _is_certain_backlash(number: Number) -> bool:
+    return number.part == "backlash" and number.value > max(number.half, MIN_BACKLASH_MM)
 
 
 def has_field(found: list[Number]) -> bool:
@@ -169,22 +197,16 @@ def has_field(found: list[Number]) -> bool:
     return any(abs(number.value) > MIN_FIELD_HALF_INTERVALS * number.half for number in found if number.part == "field")
 
 
-def format_cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
+def format_cell_table(fit, found: list[Number]) -> list[str]:
     """Return the lines of a cell's table [machine].
 
-    There are no lines if a cell can compensate none of the requested numbers.
+    There are no lines if none of the requested parts has an error that the marks show.
 
-    Backlash and a field that could be 0 are left out. The kind of machine may be unknown, so remarks say which machines
-    cannot use a line.
+    Parts that could be 0 are left out. The kind of machine may be unknown, so remarks say which machines cannot use a
+    line.
     """
-    parts, machine = list_requested_parts(options), fit.machine
-    backlash = [
-        number.value if number.value > max(number.half, MIN_BACKLASH_MM) else 0.0
-        for number in found
-        if number.part == "backlash"
-    ]
-    is_bent = has_field(found)
-    lines = ["[machine]"] if set(parts) - {"backlash", "field"} or any(backlash) or is_bent else []
+    parts, machine = list_certain_parts(found), fit.machine
+    lines = ["[machine]"] if parts else []
     if "lean" in parts:
         lines.append(f"lean_mm_per_mm = {format_pair(machine.lean_mm_per_mm)}  {SERVO_REMARK}")
     if "axes" in parts:
@@ -195,9 +217,11 @@ def format_cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> l
             f"height_mm = {height:.3f}  {PEN_REMARK}",
             f"tilt_mm_per_mm = {format_pair(machine.tilt_mm_per_mm)}  {SERVO_REMARK}",
         ]
-    if any(backlash):
+    if "backlash" in parts:
+        numbers = [number for number in found if number.part == "backlash"]
+        backlash = [number.value if _is_certain_backlash(number) else 0.0 for number in numbers]
         lines.append("backlash_mm = [{:.3f}, {:.3f}]  ".format(*backlash) + ARM_REMARK)
-    return [*lines, *(format_field_lines(machine) if is_bent else [])]
+    return [*lines, *(format_field_lines(machine) if "field" in parts else [])]
 
 
 def format_field_lines(machine) -> list[str]:

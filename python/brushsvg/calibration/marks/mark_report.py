@@ -73,7 +73,7 @@ def report(calibration, of_photo: bool = False, advised_parts: tuple[str, ...] =
         f"only {calibration.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
     machine_numbers = machine_found.list_machine_numbers(fit, calibration.covariance, calibration.expected)
-    cell = machine_found.format_cell_table(fit, calibration.expected, machine_numbers)
+    cell = machine_found.format_cell_table(fit, machine_numbers)
     lines = [
         f"{name_and_depths(brush)}: {summarize_laws(brush)}, from {len(calibration.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {format_overlap(in_place)} as painted, and by {format_overlap(moved)} "
@@ -84,7 +84,7 @@ def report(calibration, of_photo: bool = False, advised_parts: tuple[str, ...] =
         *(
             ["the cell file can correct errors of this machine: copy the table [machine] from the details"]
             if cell
-            else []
+            else machine_found.describe_exact_machine(machine_numbers)
         ),
         *machine_found.advise_parts(ignored, machine_found.list_requested_parts(calibration.expected)),
         *_describe_strays(calibration),

@@ -18,7 +18,7 @@ from ..law_text import (
     name_and_depths,
     paper_height,
 )
-from ..marks.machine_found import describe_numbers, format_cell_table, list_machine_numbers
+from ..marks.machine_found import describe_exact_machine, describe_numbers, format_cell_table, list_machine_numbers
 from .from_prior import found_height
 
 MIN_REPORTED_OFFSET_MM = 0.05  # the report mentions a different form of the prior if it moves a law by more
@@ -37,14 +37,15 @@ def report(calibration) -> Report:
         f"{plural(len(calibration.strays), 'mark')} had to be left out" if calibration.strays else "",
         _describe_falling_lag(brush),
     ]
+    machine_numbers = list_machine_numbers(fit, calibration.covariance, calibration.options)
     lines = [
         f"{name_and_depths(brush)}: brush {calibration.before.name}, updated with {plural(count, 'mark')} painted at "
         f"depths up to {calibration.painted.deepest_mm:.3g} mm",
         *(f"{law}: {_describe_law(calibration, law)}" for law in LAWS),
         *_list_remarks(calibration),
+        *describe_exact_machine(machine_numbers),
     ]
-    machine_numbers = list_machine_numbers(fit, calibration.covariance, calibration.options)
-    table = format_cell_table(fit, calibration.options, machine_numbers)
+    table = format_cell_table(fit, machine_numbers)
     details = [*_compare_laws(calibration, laws), *_describe_residuals(calibration)]
     details += [
         f"{law}, uncertainty before: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS
