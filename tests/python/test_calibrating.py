@@ -83,6 +83,29 @@ def test_options_that_contradict_are_refused_before_any_file_is_read(source, opt
         brushsvg.calibrate(source, **options)
 
 
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"machine": ("lean",)}, {"spread": "spread.json"}, {"height_mm": 0.1}],
+    ids=lambda options: [*options],
+)
+def test_options_that_dabs_do_not_have_are_refused_before_the_photograph_is_read(options):
+    chart = brushsvg.chart(brushsvg.find_brush("round-6"), (210, 297), "few", dabs=True)
+    known = {"brush": "round-6"} if options else {}
+    with refused("options-contradict"):
+        brushsvg.calibrate("missing.jpg", chart=chart, **known, **options)
+    with refused("brush-unknown"):
+        brushsvg.calibrate("missing.jpg", chart=chart, brush="nobody")
+
+
+def test_files_of_options_are_refused_before_the_photograph_is_read(tmp_path):
+    chart = brushsvg.chart(brushsvg.find_brush("round-6"), (210, 297), "few")
+    (tmp_path / "spread.json").write_text("[]")
+    for options, file in (({"spread": tmp_path / "spread.json"}, "spread.json"), ({"brush": "rigid"}, "rigid")):
+        with pytest.raises(brushsvg.Error) as caught:
+            brushsvg.calibrate("missing.jpg", chart=chart, **options)
+        assert Path(caught.value.file).name == file, caught.value
+
+
 @pytest.mark.parametrize("option", ["absolute", "total"])
 def test_options_for_numbers_are_refused_for_painted_marks(option):
     with refused("options-contradict"):

@@ -335,11 +335,17 @@ def run_calibration(
     name = name or default_name or os.path.splitext(os.path.basename(photos[0]))[0]
     if options.plan is not None:
         return _update_from_job(photos, name, options, stage, warn)
+    of_dabs = is_of_dabs(_load_chart(options))
+    if of_dabs:
+        _refuse_stroke_options(options)
+    if options.spread is not None:
+        read_displacement_mm(options.spread)  # a file that is refused is refused before the photographs are read
+    known_brush = None if options.brush is None else _load_known_brush(options.brush, of_dabs)
     read = read_chart_photographs(photos, options, stage, warn)
-    if is_of_dabs(read.chart):
-        return _calibrate_from_dabs(photos, read, name, options, warn)
-    if options.brush is not None:
-        return _fit_lag_from_strokes(photos, read, name, options, stage, warn)
+    if of_dabs:
+        return _calibrate_from_dabs(photos, read, name, known_brush, warn)
+    if known_brush is not None:
+        return _fit_lag_from_strokes(photos, read, name, known_brush, options, stage, warn)
     return _calibrate_from_strokes(photos, read, name, options, stage, warn)
 
 
@@ -348,12 +354,25 @@ def _path_of(file) -> str:
     return file if isinstance(file, str) else ""
 
 
-def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> ChartReading:
-    """Read the photographs of one painted chart, and warn of missing strokes."""
+def _load_chart(options: CalibrationOptions) -> Chart:
     with name_file_in_errors(_path_of(options.chart)):
         # a chart that was made in Python must be valid as a file
         data = write_chart(options.chart).encode() if isinstance(options.chart, Chart) else read_bytes(options.chart)
-        chart = read_chart(data)
+        return read_chart(data)
+
+
+def _load_known_brush(source, of_dabs: bool) -> _core.Brush:
+    """Load the brush whose lag (for dabs) or outlines (for strokes) are known."""
+    known_brush = load_brush(source)
+    if not of_dabs:
+        with name_file_in_errors(_path_of(source)):
+            refuse_assumed(known_brush)
+    return known_brush
+
+
+def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> ChartReading:
+    """Read the photographs of one painted chart, and warn of missing strokes."""
+    chart = _load_chart(options)
     with name_file_in_errors(photos[0]):
         stage("reading the photographs")
         read = read_chart_photos(
@@ -427,8 +446,8 @@ def _fit_strokes(read: ChartReading, name, options, stage) -> MarkCalibration:
     return calibrate_painted(painted, name, options=fit_options, edge_mm=edge_mm(read), leave_out_strays=True)
 
 
-def _calibrate_from_dabs(photos, read: ChartReading, name, options, warn) -> BrushCalibration:
-    """Return a brush whose lag is known, with outlines from dabs."""
+def _refuse_stroke_options(options: CalibrationOptions) -> None:
+    """Raise Error if options do not belong to a chart of dabs."""
     for is_broken, why in (
         (
             options.brush is None,
@@ -440,7 +459,10 @@ def _calibrate_from_dabs(photos, read: ChartReading, name, options, warn) -> Bru
     ):
         if is_broken:
             raise Error(why, code="options-contradict")
-    known_brush = load_brush(options.brush)
+
+
+def _calibrate_from_dabs(photos, read: ChartReading, name, known_brush, warn) -> BrushCalibration:
+    """Return a brush whose lag is known, with outlines from dabs."""
     joined_strokes = tuple(stroke for pair in read.marks.joined for stroke in pair)
     with name_file_in_errors(photos[0]):
         calibration = calibrate_dabs(dabs_of(read), known_brush, name, edge_mm(read), joined_strokes)
@@ -449,11 +471,8 @@ def _calibrate_from_dabs(photos, read: ChartReading, name, options, warn) -> Bru
     return BrushCalibration(calibration.brush, "dabs", calibration, report, reading_in_words(read), _read=read)
 
 
-def _fit_lag_from_strokes(photos, read: ChartReading, name, options, stage, warn) -> BrushCalibration:
+def _fit_lag_from_strokes(photos, read: ChartReading, name, known_brush, options, stage, warn) -> BrushCalibration:
     """Return a brush whose outlines are known, with the lag of painted strokes."""
-    known_brush = load_brush(options.brush)
-    with name_file_in_errors("" if isinstance(options.brush, _core.Brush) else options.brush):
-        refuse_assumed(known_brush)
     with name_file_in_errors(photos[0]):
         stroke_fit = _fit_strokes(read, name, options, stage)
         lag_fit = lag_by_outlines(stroke_fit, known_brush, name)
