@@ -16,6 +16,7 @@ from brushsvg.calibration.chart.dabs import dab_depths, dab_poses, is_of_dabs, r
 from brushsvg.calibration.chart.file import read_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.dabs.dab_outlines import Dab  # noqa: E402
+from brushsvg.calibration.dabs.dab_report import describe_heading_difference  # noqa: E402
 from brushsvg.calibration.dabs.from_dabs import calibrate_dabs  # noqa: E402
 from brushsvg.calibration.numbers.from_widths import new_brush  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
@@ -211,3 +212,9 @@ def test_a_chart_of_dabs_writes_a_program_a_page_and_a_file(tmp_path, capsys):
     assert (
         main(["chart", "-o", files[0], "--dabs", "--noise", "0.2"]) == 2
     )  # --noise is for intervals, which dabs do not show
+
+
+def test_a_difference_between_headings_that_rounds_to_zero_is_called_equal():
+    assert "0.02 mm" in describe_heading_difference(0.02)
+    words = describe_heading_difference(0.004)
+    assert "equal" in words and "0.00 " not in words

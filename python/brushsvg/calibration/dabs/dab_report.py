@@ -38,8 +38,8 @@ def report(calibration) -> Report:
     lines = [
         f"{name_and_depths(brush)}: outlines from {count} dabs at {len(shapes)} depths, lag from brush "
         f"{calibration.before.name}",
-        f"the sheet is displaced by {shift[0]:+.2f}, {shift[1]:+.2f} mm and turned by {turn:+.2f} degrees; dabs of "
-        f"different headings differ by {outlines.turned_mm:.2f} mm (rms)",
+        f"the sheet is displaced by {shift[0]:+.2f}, {shift[1]:+.2f} mm and turned by {turn:+.2f} degrees; "
+        f"{describe_heading_difference(outlines.turned_mm)}",
         *([_describe_hidden_fronts(hidden)] if hidden else []),
         *(text.format(before=calibration.before.name) for text in LIMITS_OF_DABS),
     ]
@@ -54,6 +54,14 @@ def report(calibration) -> Report:
     sides = "both sides are equal" if outlines.is_even else "one side is larger than the other, by more than chance"
     details += [f"{HALF_95}{edges}", f"outlines: {sides}; they are smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
     return Report(verdict([], reservations), tuple(lines), (*details, "", *format_coefficients(brush)))
+
+
+def describe_heading_difference(difference_mm: float) -> str:
+    """Return by how much dabs of different headings differ (rms). The digits do not show less than 0.005 mm."""
+    shown = f"{difference_mm:.2f}"
+    if float(shown) == 0:
+        return "dabs of different headings have equal outlines, to 0.01 mm (rms)"
+    return f"dabs of different headings differ by {shown} mm (rms)"
 
 
 _MEASURED_LAWS = ("tip_gap", "tip_to_widest", "half_width")
