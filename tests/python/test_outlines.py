@@ -4,6 +4,8 @@ The tests check the number of strokes, their middle lines, their directions, the
 shape that belongs to each stroke.
 """
 
+import itertools
+
 import numpy as np
 import pytest
 import shapely
@@ -510,6 +512,37 @@ def test_hairline_contours_can_be_read_as_shapes():
     assert painted(contour)[0].half_width == ((0.0, 0.05),)
     (shape,) = painted(contour, paths_as="outline")
     assert {round(half, 2) for _, half in shape.half_width} == {3}
+
+
+HAIRLINE = 'fill="none" stroke="red" stroke-width=".1"'
+
+
+def test_a_contour_inside_another_is_its_hole():
+    """CAD programs export the counter of an O as a line of its own. It was once painted over."""
+    flattening_mm2 = 0.02 * 2 * np.pi * 20
+    circles = "".join(f'<circle id="r{r}" cx="60" cy="30" r="{r}" {HAIRLINE}/>' for r in (20, 14, 3))
+    made = painted(circles, paths_as="outline")
+    assert [stroke.id for stroke in made] == ["r20", "r3"]
+    assert _core.area(target(made)) == pytest.approx(np.pi * (20**2 - 14**2 + 3**2), abs=flattening_mm2)
+    two_colours = painted(circles.replace('stroke="red"', 'stroke="blue"', 1), paths_as="outline")
+    assert _core.area(target(two_colours)) == pytest.approx(np.pi * 20**2, abs=flattening_mm2)
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(4))))
+def test_lines_that_meet_end_to_end_are_one_outline(order):
+    """Two sides in a row were once painted as a triangle, and single sides were left out."""
+    sides = ["M10 20H60", "M60 26V20", "M60 26.005H10", "M10 20V26"]
+    body = "".join(path(sides[k], HAIRLINE).replace('"p"', f'"p{k}"') for k in order)
+    (shape,) = painted(body, paths_as="outline")
+    assert shape.id == f"p{order[0]}"
+    assert _core.area(shape.target_mm) == pytest.approx(300, abs=0.5)
+    assert len(painted(body, paths_as="stroke")) == 4
+
+
+def test_lines_with_three_ends_at_one_place_stay_separate():
+    sides = ["M10 10H60", "M60 10L30 30", "M60 10V40H20"]
+    body = "".join(path(side, HAIRLINE).replace('"p"', f'"p{k}"') for k, side in enumerate(sides))
+    assert [stroke.id for stroke in painted(body, paths_as="outline")] == ["p2"]
 
 
 def test_a_drawing_without_paintable_shapes_is_refused():

@@ -56,8 +56,9 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
     the direction and order of writing, and each has its part of the shape. Where the stroke has a colour of its
     own, the shape is painted as far as it is filled, and then the line.
 
-    paths_as: "stroke" ignores fills; "outline" ignores strokes, and every path is the outline of a shape; None
-    takes paths as they are drawn. script: "auto", "latin", "arabic", "devanagari" or "cjk", how filled shapes are
+    paths_as: "stroke" ignores fills; "outline" ignores strokes, and every path is the outline of a shape; lines
+    without a fill that meet end to end are one outline, and an outline inside another is its hole; None takes paths
+    as they are drawn. script: "auto", "latin", "arabic", "devanagari" or "cjk", how filled shapes are
     written unless an element says so itself. "arabic" also orders the filled shapes of a line of text from the right.
 
     A stroke has the id of its element, or id/1, id/2 ... if there are several. Without an id it is strokeN, where N
@@ -70,7 +71,12 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
     need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
     need_one_of(script, SCRIPTS, "script")
     painted_elements, empty, notices, known_shapes = [], [], [], _KnownShapes()
-    for element in (part for each in design.elements for part in _split_by_colour(each, paths_as)):
+    elements = design.elements
+    if paths_as == "outline":
+        from .shape_outlines import assemble_outlines
+
+        elements = assemble_outlines(elements)
+    for element in (part for each in elements for part in _split_by_colour(each, paths_as)):
         try:
             lines = _find_lines(element, paths_as, script, known_shapes)
         except Error as beyond:
