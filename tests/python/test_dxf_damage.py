@@ -2,17 +2,20 @@
 
 import logging
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from diagnostics import agrees, gives, refused
 from dxf_text import SHEET, apart, bulged, drawing, encoded, read, text_dxf
 
+import brushsvg
 from brushsvg.errors import Error
 from brushsvg.notice_summary import summarize_notices
-from brushsvg.read import ReadOptions
+from brushsvg.read import ReadOptions, read_drawing
 from brushsvg.read.design import Design
 from brushsvg.read.dxf import entity_walk, read_dxf, splines
+from brushsvg.read.layout import Layout, arrange, bounds_mm
 from brushsvg.strokes.extraction import strokes
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
@@ -384,6 +387,25 @@ def test_map_coordinates_are_moved_to_the_sheet_and_distant_lines_left_out():
         assert agrees(refusal(text_dxf(far)), "nothing-to-paint LINE-1 1e6")
     with refused("nothing-to-paint 1e6"):
         read_dxf(text_dxf("0 LINE 8 0 10 5e9 20 0 11 5.01e9 21 0"), anywhere)
+
+
+@pytest.mark.parametrize("placed", [{"fit_mm": (20, 100)}, {"origin_mm": (30, 40)}])
+def test_map_coordinates_are_placed_on_a_requested_sheet(tmp_path, placed):
+    """Without a place on the sheet, the refusal advises to give one. A place was once refused as well."""
+    (tmp_path / "far.dxf").write_bytes(text_dxf("0 LINE 8 0 10 35e5 20 54e5 11 3500005 21 5400050"))
+    job = {"sheet": SHEET, "units": "mm", "width": 2}
+    with refused("nothing-to-paint LINE-1 1e6 --fit --origin"):
+        brushsvg.convert(tmp_path / "far.dxf", tmp_path / "far.ngc", **job)
+    place = {name.removesuffix("_mm"): value for name, value in placed.items()}
+    brushsvg.convert(tmp_path / "far.dxf", tmp_path / "far.ngc", **job, **place)
+    arranged = arrange(
+        read_drawing(tmp_path / "far.dxf", replace(OPTIONS, is_placed_later=True)), Layout(width_mm=2.0, **placed)
+    )
+    box = bounds_mm(arranged.elements)
+    if "origin_mm" in placed:
+        assert box == pytest.approx((30, 40, 37, 92))
+    else:
+        assert box[2:] + box[:2] == pytest.approx(SHEET)
 
 
 LOOK = "0 LINE 8 0 10 0 20 {y} 11 50 21 {y} "

@@ -100,6 +100,7 @@ def make_read_options(chosen: Choices) -> ReadOptions:
         tuple(chosen.skip_region or ()),
         tuple(chosen.skip_comment or ()),
         lenient=True,  # damaged geometry is reported together with the other notices
+        is_placed_later=chosen.fit is not None or chosen.origin is not None,
     )
 
 

@@ -31,6 +31,8 @@ class ReadOptions:
     skip_regions_mm: rectangles (x0, y0, x1, y1); strokes inside a rectangle are left out (G-code).
     skip_comments: texts; strokes that follow a comment with one of these texts are left out (G-code).
     lenient: read the undamaged part of damaged geometry and add a notice about the damaged part.
+    is_placed_later: the marks get their place on the sheet after reading, so a drawing may be any distance away from
+    the sheet (DXF).
     """
 
     sheet_mm: tuple[float, float] | None = None
@@ -42,6 +44,7 @@ class ReadOptions:
     skip_regions_mm: tuple[tuple[float, float, float, float], ...] = ()
     skip_comments: tuple[str, ...] = ()
     lenient: bool = False
+    is_placed_later: bool = False
 
 
 AS_DRAWN = ReadOptions()
@@ -71,6 +74,7 @@ def check_read_options(options: ReadOptions) -> ReadOptions:
     regions = need_regions(options.skip_regions_mm, "skip_regions_mm")
     need_texts(options.skip_comments, "skip_comments")
     need_truth(options.lenient, "lenient")
+    need_truth(options.is_placed_later, "is_placed_later")
     if options.select is not None:
         require_type(options.select, str, "a text", "select")
     return replace(options, sheet_mm=sheet_mm, paper_z_mm=paper_z_mm, skip_regions_mm=regions)

@@ -5,6 +5,8 @@ The rules are in docs/reference/drawings.md.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Notice
 from ..empty_drawing import empty_drawing_error
@@ -23,7 +25,7 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     """Read the model space of a DXF, with its strokes in the order drawn, in mm.
 
     Without options.sheet_mm, the sheet is the bounding box of the drawing plus a margin of 20 mm. A given sheet has
-    the origin of the drawing at its lower left corner.
+    the origin of the drawing at its lower left corner, unless the drawing is far away and options.is_placed_later.
 
     Raises Error if the data is not a DXF or has nothing to paint, or if neither the drawing nor the options give a
     unit.
@@ -32,9 +34,13 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     mm_per_unit, unit_notices = find_unit(document, options.units)
     walk = EntityWalk(document, mm_per_unit)
     walk.run()
-    pieces, far_notices = keep_in_range(walk.pieces if options.sheet_mm else move_to_origin(walk.pieces))
+    keeps_origin = options.sheet_mm is not None and not options.is_placed_later
+    pieces, far_notices = keep_in_range(walk.pieces if keeps_origin else move_to_origin(walk.pieces))
     notices += [*unit_notices, *walk.notices, *far_notices]
     if not pieces:
+        if keeps_origin and far_notices:
+            advice = "--fit WxH or --origin X,Y moves the drawing onto the sheet"
+            notices = [replace(notice, advice=advice) for notice in far_notices]
         raise empty_drawing_error(notices)
     heights = [curve.cubics[..., 2] for piece in pieces for curve in piece.curves]
     lowest, highest = min(z.min() for z in heights), max(z.max() for z in heights)
