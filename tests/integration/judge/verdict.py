@@ -355,7 +355,7 @@ def _fast(way: Way, job: Job):
     if fast.any():
         k = int(fast.argmax())
         yield f"fast while touching: {kinds[k]} at {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
-    fastest = max(job.cell["speeds"][f"{what}_mm_s"] for what in ("travel", "approach"))
+    fastest = max(job.cell["speeds"][f"{what}_mm_s"] for what in ("travel", "approach", "press"))
     if (over := ~still & (kinds != "jump") & (speeds > fastest * 1.001 + 0.01 + rounded)).any():
         k = int(over.argmax())
         yield f"faster than any speed of the cell: {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
