@@ -107,6 +107,17 @@ def test_nearest_first_order_does_not_change_the_prepared_work(tmp_path):
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256
 
 
+def test_nearest_first_order_paints_no_colour_in_between():
+    """Strokes of two colours side by side once took turns, so that the brush was changed before every stroke."""
+    passes = [_core.Pass(name, np.array([[x, 20, 0], [x + 5, 20, 0]], dtype=float), 10.0) for name, x in NEIGHBOURS]
+    for a_pass in passes:
+        a_pass.colour = "#c62828" if a_pass.stroke.startswith("red") else "#1a237e"
+    assert painting_order.list_nearest_first(passes) == [0, 2, 1, 3, 5, 4]
+
+
+NEIGHBOURS = (("red 1", 10), ("red 2", 90), ("red 3", 50), ("blue 1", 16), ("blue 2", 96), ("blue 3", 56))
+
+
 def test_loads_of_a_stroke_stay_together_in_nearest_first_order():
     """The loads of a stroke stay together even if other strokes begin nearer.
 

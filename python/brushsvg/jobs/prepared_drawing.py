@@ -112,7 +112,7 @@ def select_passes(work: PreparedDrawing, rows: list[int]) -> PreparedDrawing:
 def order_nearest_first(work: PreparedDrawing) -> PreparedDrawing:
     """Return the work with its strokes in the order of the shortest travel.
 
-    Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
-    places, and no stroke is painted backwards.
+    Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer and
+    colour change places, and no stroke is painted backwards.
     """
     return select_passes(work, painting_order.list_nearest_first(work.plan.passes))

@@ -24,15 +24,18 @@ def _order_of(stroke) -> int:
 def list_nearest_first(passes) -> list[int]:
     """Return the numbers of the passes, each followed by the one that starts nearest.
 
-    Only passes that follow each other in one layer change places, and none is painted backwards. The loads of one
-    stroke stay together.
+    Only passes of one colour that follow each other in one layer change places, and none is painted backwards. The
+    loads of one stroke stay together.
     """
-    return [int(k) for group in _group_by_layer_and_order(passes) for k in _order_nearest(passes, group)]
+    return [int(k) for group in _group_sortable(passes) for k in _order_nearest(passes, group)]
 
 
-def _group_by_layer_and_order(passes) -> list[list[int]]:
-    """Return the numbers of consecutive passes with the same layer and `order`."""
-    keys = [(a_pass.layer, _order_of(a_pass)) for a_pass in passes]
+def _group_sortable(passes) -> list[list[int]]:
+    """Return the numbers of consecutive passes with the same layer, `order` and colour.
+
+    Each change of colour needs another brush or a wash, and where colours cross, the later one is on top.
+    """
+    keys = [(a_pass.layer, _order_of(a_pass), a_pass.colour) for a_pass in passes]
     numbers = range(len(passes))
     return [list(group) for _, group in itertools.groupby(numbers, key=keys.__getitem__)]
 

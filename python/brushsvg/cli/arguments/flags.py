@@ -66,7 +66,10 @@ def add_job_options(command: argparse.ArgumentParser) -> None:
 
 def add_order(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--order", choices=("drawn", "nearest"), default="drawn", help="order of the strokes in a layer; default: drawn"
+        "--order",
+        choices=("drawn", "nearest"),
+        default="drawn",
+        help="order of the strokes of a layer and colour; default: drawn",
     )
 
 
