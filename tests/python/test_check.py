@@ -36,6 +36,14 @@ def test_a_valid_program_agrees_with_its_drawing(desk):
         assert np.abs(ours.poses_mm[-1] - theirs.poses_mm[-1]).max() < 2e-3
 
 
+def test_the_report_has_the_title_of_the_drawing(desk):
+    """A program has ASCII letters only: the report once began with "...... ...." for this title."""
+    Path("two.svg").write_text(TWO.replace("<path", "<title>Привет, мир</title><path", 1))
+    brushsvg.convert("two.svg", "title.gcode", cell="grbl-3axis")
+    assert brushsvg.check("title.gcode", "two.svg").figures.title == "Привет, мир"
+    assert "Привет" not in brushsvg.check("title.gcode").figures.title
+
+
 def test_check_reports_the_same_codes_as_the_command(desk, capsys):
     lines = Path("two.ngc").read_text().splitlines(keepends=True)
     Path("short.ngc").write_text("".join(line for line in lines if not line.startswith("G2 ")))

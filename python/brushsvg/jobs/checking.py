@@ -262,7 +262,8 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         problems = problems + rewrite_notices
         if rewritten and not problems:
             problems = find_moves_out_of_arm(rewritten, sheet_mm)
-        painted_work = PreparedDrawing(header.title, brush, simulated.plan, strokes, (), Options(), ())
+        title = (work and work.title) or header.title  # a program has ASCII letters only
+        painted_work = PreparedDrawing(title, brush, simulated.plan, strokes, (), Options(), ())
         seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered in the program
             seconds = as_run_s
