@@ -76,6 +76,15 @@ def test_only_equal_strokes_share_one_entry():
     assert len({ink for word, *_, ink in words_of(alike) if word.isdigit()}) == 6
 
 
+def test_an_entry_keeps_the_number_and_the_width_of_a_stroke_with_a_long_name():
+    """A word in Arabic or Devanagari is one shape, whose name was longer than the entry of each of its strokes."""
+    name = "glyph-1-u0628u0627u0644u0639u0627u0644u0645"
+    body = f'<path id="{name}" d="M10 5v9M20 5v9M30 5v9" stroke-width="1.25"/>'
+    entries = [word for word, *_ in words_of(body) if "glyph" in word]
+    assert [word.rsplit("/", 1)[1] for word in entries] == ["1: 1.25 mm", "2: 1.25 mm", "3: 1.25 mm"]
+    assert all("glyph-1-u06" in word and len(word) <= 46 for word in entries)
+
+
 def test_numbers_do_not_overlap():
     crowd = "".join(f'<path d="M{30 + k % 15} {20 + k // 15}h.5" stroke-width=".3"/>' for k in range(150))
     boxes = [(x, y, 11.0 * len(word)) for word, x, y, _ in words_of(crowd) if word.isdigit()]

@@ -33,6 +33,7 @@ from .stroke_labels import LABEL_CELL_PX, Run, group_runs, mark_cells, start_dir
 
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
 MAX_LISTED = 120  # entries in each list
+MAX_ENTRY_LETTERS = 46  # of an entry for a stroke
 LETTER_WIDTH_PX = 10.0  # width per letter of the lists, between the widths of OpenCV's font and of browsers
 MAX_LABEL_DISTANCE_PX = 22.0  # from a stroke's start to its number
 MIN_LABEL_SPACING_PX = 80.0  # between two numbered dashes of one element
@@ -188,8 +189,16 @@ def _stroke_entry(strokes: list, run: Run) -> str:
         number, names = f"{number}-{run.last + 1}", f"{names} ... {strokes[run.last].id}"
         count = f" ({run.last - run.first + 1} strokes)"
     layer = f", {stroke.layer}" if stroke.layer else ""
-    words = f"{number}  {names}: {width_text(stroke)} mm{count}{layer}"
-    return words if len(words) <= 46 else words[:43] + "..."
+    widths = f": {width_text(stroke)} mm{count}"
+    names = _shorten_middle(names, MAX_ENTRY_LETTERS - len(f"{number}  {widths}"))
+    words = f"{number}  {names}{widths}{layer}"
+    return words if len(words) <= MAX_ENTRY_LETTERS else words[: MAX_ENTRY_LETTERS - 3] + "..."
+
+
+def _shorten_middle(name: str, room: int) -> str:
+    """Return a name with its beginning and its end, where the number of the stroke is."""
+    kept = max(room - 3, 8)
+    return name if len(name) <= room else f"{name[: kept // 2]}...{name[-(kept - kept // 2) :]}"
 
 
 def _letters_per_line(canvas: _Canvas) -> int:
