@@ -3,6 +3,7 @@ import xml.etree.ElementTree as ET
 
 import cv2
 import numpy as np
+import pytest
 from diagnostics import gives
 from svg_text import read
 
@@ -11,6 +12,7 @@ from brushsvg.read import ReadOptions
 from brushsvg.read.design import Notice
 from brushsvg.read.svg import read_svg
 from brushsvg.show.import_picture import draw_import_picture
+from brushsvg.show.png_canvas import write_text
 from brushsvg.strokes.extraction import strokes
 
 BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 30h30"/>
@@ -39,6 +41,25 @@ def test_png_shows_the_stroke_at_its_place_and_width():
     band = painted[(painted > top + 5 * 15) & (painted < top + 15 * 15)]
     assert abs(len(band) - 6 * 15) <= 3
     assert abs(band.mean() - (top + 10 * 15)) <= 2
+
+
+@pytest.mark.parametrize(
+    ("title", "from_the_left"),
+    [
+        ("\u05d0\u05d1\u05d2", "\u05d2\u05d1\u05d0"),
+        ("\u0645\u0631 2026", "2026 \u0631\u0645"),
+        ("\u05d0\u05d1 (ab) 12", "12 (ab) \u05d1\u05d0"),
+        ("ab (\u05d0\u05d1) 12", "ab (\u05d1\u05d0) 12"),
+        ("(\u05d0) \u05d1", "\u05d1 (\u05d0)"),
+        ("Gr\u00fc\u00dfe (2)", "Gr\u00fc\u00dfe (2)"),
+    ],
+)
+def test_png_shows_hebrew_and_arabic_from_right_to_left(title, from_the_left):
+    """The letters once stood from left to right, as OpenCV writes all letters."""
+    made, expected = (np.full((60, 400, 3), 255, np.uint8) for _ in range(2))
+    write_text(made, title, (20, 40), 28, 400, "#000000")
+    cv2.putText(expected, from_the_left, (20, 40), (0, 0, 0), cv2.FontFace("sans"), 28, 400)
+    assert (made == expected).all() and (made < 255).any()
 
 
 def test_a_drawing_without_strokes_still_gives_a_picture():

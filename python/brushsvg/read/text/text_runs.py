@@ -9,13 +9,12 @@ import unicodedata
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
-from fontTools.unicodedata import script as find_script_tag
-
 _STRONG = ("L", "R", "AL")
 _NOT_NEUTRAL = ("L", "R", "EN", "AN")
 _REMOVED = ("BN", "LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _COMMON_SCRIPTS = ("Zyyy", "Zinh", "Zzzz")  # digits, punctuation, accents, unassigned characters
 _SEPARATORS = (("ES", "EN"), ("CS", "EN"), ("CS", "AN"))  # (separator, numbers that it may join)
+_MIRRORED = str.maketrans("()[]{}<>«»", ")(][}{><»«")
 _MAX_OPEN_BRACKETS = 63  # UAX #9 (BD16) reads no brackets after this number
 # How much higher the level of a character is than the level of its line, for lines from the left and from the right.
 _LEVEL_STEPS = ({"L": 0, "R": 1, "EN": 2, "AN": 2}, {"L": 1, "R": 0, "EN": 1, "AN": 1})
@@ -65,8 +64,22 @@ def sort_from_the_left(runs: list[TextRun]) -> list[TextRun]:
     return ordered
 
 
+def sort_letters_from_the_left(line: str) -> str:
+    """Return a line with its letters in their order on paper, for a library that does not know directions.
+
+    Brackets between letters from right to left are mirrored.
+    """
+    keys = _find_levels(line)
+    groups = (list(group) for _, group in groupby(range(len(line)), key=keys.__getitem__))
+    runs = [TextRun(group[0], group[-1] + 1, "Zyyy", keys[group[0]]) for group in groups]
+    parts = ((line[run.start : run.end], run.is_right_to_left) for run in sort_from_the_left(runs))
+    return "".join(part[::-1].translate(_MIRRORED) if is_turned else part for part, is_turned in parts)
+
+
 def _find_scripts(line: str) -> list[str]:
     """Return each character's script, that of the character before it if it has none."""
+    from fontTools.unicodedata import script as find_script_tag  # pictures need directions only
+
     tags = list(map(find_script_tag, line))
     current = next((tag for tag in tags if tag not in _COMMON_SCRIPTS), "Zyyy")
     scripts = []
