@@ -360,6 +360,16 @@ def test_rounded_parts_of_a_steep_path_are_not_a_jump(width_mm):
     assert simulate_program.simulate_program(read, find_brush("round-6"), cell, (100.0, 60.0)).problems == []
 
 
+def test_a_servo_path_is_not_steep_because_its_heights_are_rounded_as_lengths():
+    """A rise of two steps and a value counted 0.0004 mm more, and the reader pressed the brush on the spot."""
+    servo = Servo(((-8.969, 10840.0), (19.092, 40140.0)), 0.05, 0.15)
+    heights = [-8.969 + (value - 10840) * 28.061 / 29300 for value in (14481, 14586)]
+    poses = np.array([(10, 10, heights[0]), (10.0125, 10.05, heights[1]), (11, 11, heights[1])])
+    a_pass = _core.Pass("a", poses, 20.0)
+    written = as_written(a_pass, replace(find_cell("axidraw-ebb"), servo=servo), np.eye(4), was_read=True)
+    assert len(written.commanded_mm) == 3
+
+
 def test_a_lift_before_any_feed_has_a_speed():
     text = GOLDEN.read_text(encoding="utf-8").replace("G21 G90", "M3 S800\nM3 S796\nG21 G90")
     read = read_program(text, ".ngc", CELL)
