@@ -6,7 +6,8 @@ from svg_text import read
 
 from brushsvg import _core, compensate, find_brush, flatten, simulate
 from brushsvg.show.evaluation import figures
-from brushsvg.show.evaluation.error_causes import _path_cause, _sharpest_corner_deg, _StrokePlace
+from brushsvg.show.evaluation.error_causes import SCALE_UP, _path_cause, _sharpest_corner_deg, _StrokePlace
+from brushsvg.show.evaluation.places import worst_places
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.wide_shapes import within_reach
 
@@ -30,13 +31,15 @@ def box(x0, y0, x1, y1):
     return [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)]
 
 
-def found(target, how="closed", name="round-6", tolerance_mm=0.05):
+def painted_plan(target, how="closed", name="round-6", tolerance_mm=0.05):
     brush = find_brush(name)
     painted, target, _ = within_reach([target], brush, "clamp")
     plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
-    rows, _ = figures.measure_figures(
-        figures.PaintedPlan(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
-    )
+    return figures.PaintedPlan(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
+
+
+def found(target, how="closed", name="round-6", tolerance_mm=0.05):
+    rows, _ = figures.measure_figures(painted_plan(target, how, name, tolerance_mm))
     return rows[0].worst
 
 
@@ -69,6 +72,14 @@ def test_the_cause_of_an_error_is_reported(target, code, says, near):
     assert worst.code == code and says in worst.reason
     if near:
         assert worst.place_mm == pytest.approx(near, abs=3.0)
+
+
+def test_a_refined_job_is_not_advised_to_refine():
+    tight = stroke(arc(4.0, 1.0, 60), 3.9, True)
+    places = {how: worst_places(painted_plan(tight, how))[0] for how in ("closed", "refined")}
+    assert {place.code for place in places.values()} == {"tighter-than-lag"}
+    assert "refined" in places["closed"].remedy
+    assert places["refined"].remedy == SCALE_UP
 
 
 @pytest.mark.parametrize(("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider", "thinner"])

@@ -42,15 +42,17 @@ REMEDIES = {  # by code of the cause, where a remedy exists
     "off-middle-line": "use a smaller --tolerance",
     "wider-on-bends": "try --compensation refined",
 }
+REFINABLE_CODES = ("tighter-than-lag", "wider-on-bends")  # refinement helps, and more than it only SCALE_UP
 
 
 # Causes whose remedy is SCALE_UP in a filled shape, because nobody drew the strokes there.
 LINE_CODES = ("stroke-start", "stroke-end", "off-middle-line")
 
 
-def find_remedy(code: str, stroke) -> str:
-    """Return the remedy for a cause, "" where there is none."""
-    return SCALE_UP if code in LINE_CODES and stroke.target_mm else REMEDIES.get(code, "")
+def find_remedy(code: str, stroke, compensation: str) -> str:
+    """Return the remedy for a cause, "" where there is none. A refined job is not refined again."""
+    is_refined = code in REFINABLE_CODES and compensation == "refined"
+    return SCALE_UP if is_refined or (code in LINE_CODES and stroke.target_mm) else REMEDIES.get(code, "")
 
 
 @dataclass(frozen=True)

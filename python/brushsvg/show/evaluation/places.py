@@ -74,7 +74,7 @@ def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
         is_off = not (stroke.target_mm or error.within_tolerance or "tracking error" in found_cause.words)
         return found_cause, error.largest_mm if is_off else None
 
-    return find_places(painted.marks, painted.brush, painted.target() or [], why)
+    return find_places(painted.marks, painted.brush, painted.target() or [], why, painted.compensation)
 
 
 def find_places(
@@ -82,11 +82,12 @@ def find_places(
     brush: _core.Brush,
     drawn: Sequence[_core.Stroke],
     why: Callable[[str, object], tuple[Cause, float | None]],
+    compensation: str,
 ) -> tuple[Place, ...]:
     """Return the five worst places, the largest first.
 
     drawn: the strokes that the marks should match; why: function of a stroke's id and a worst_areas.WorstArea that
-    returns the cause and the tracking error [mm].
+    returns the cause and the tracking error [mm]; compensation: how the marks were planned.
     """
     if not drawn or not marks.passes:
         return ()
@@ -98,16 +99,19 @@ def find_places(
     painted = _core.coverage(marks, brush, window, px_per_mm)
     corner = (window[0], window[1] + window[3])
     areas = worst_areas(target, painted, corner, px_per_mm, [line[:, :2] for line in lines])
-    return tuple(_describe_place(number, drawn[area.stroke], area, why) for number, area in enumerate(areas, 1))
+    return tuple(
+        _describe_place(number, drawn[area.stroke], area, why, compensation) for number, area in enumerate(areas, 1)
+    )
 
 
-def _describe_place(number: int, stroke, area, why) -> Place:
+def _describe_place(number: int, stroke, area, why, compensation: str) -> Place:
     cause, error_mm = why(stroke.id, area)
     size = area.words
     if error_mm is not None:
         size += f", tracking error up to {error_mm:.2g} mm"
     at = (area.missing_mm2, area.outside_mm2, error_mm)
-    return Place(number, stroke.id, area.at_mm, *at, cause.words, cause.code, find_remedy(cause.code, stroke), size)
+    remedy = find_remedy(cause.code, stroke, compensation)
+    return Place(number, stroke.id, area.at_mm, *at, cause.words, cause.code, remedy, size)
 
 
 def _window_around(lines: Iterable[np.ndarray]) -> tuple[tuple[float, float, float, float], float]:
