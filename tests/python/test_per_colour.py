@@ -40,6 +40,11 @@ def test_each_colour_gets_its_own_program(desk, capsys):
         assert in_json(capsys, "check", file, "word.svg", "--colour", ink)[0] == 0
         one = brushsvg.convert("word.svg", colour=ink)
         assert one.text == (desk / file).read_text(), "the same by --colour and from Python"
+        assert brushsvg.convert("word.svg", colour=ink[1:]).text == one.text, "as in the name of the file"
+        status, _, reported = in_json(capsys, "check", file, "word.svg")
+        assert status == 1 and {(each.code, each.advice) for _, each in reported} == {
+            ("stroke-not-painted", f"for a program of one colour, give --colour '{ink}'")
+        }
 
 
 def test_strokes_of_one_colour_keep_their_positions(desk, capsys):

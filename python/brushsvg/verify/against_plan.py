@@ -71,10 +71,14 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
         for name, k in zip(names, partners, strict=True)
         if k is None
     ]
-    problems += [
-        Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted") for k in unmatched
-    ]
     matched = [k for k in partners if k is not None]
+    painted_colours = {due[k].colour for k in matched}
+    is_one_colour = len(painted_colours) == 1 and not painted_colours & {due[k].colour for k in unmatched}
+    advice = f"for a program of one colour, give --colour '{painted_colours.pop()}'" if is_one_colour else ""
+    problems += [
+        Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted", advice=advice)
+        for k in unmatched
+    ]
     if not problems and matched != sorted(matched):
         at = next(place for place, k in enumerate(matched) if k != place)
         sentence = f"it is painted where the drawing asks for {required[at]}"

@@ -89,10 +89,10 @@ def refuse_ends_without_effect(chosen: Choices) -> None:
 
 
 def read_colour(text: str) -> str:
-    """Return a colour, written as in SVG, as "#rrggbb". Error for any other text."""
+    """Return a colour as "#rrggbb", written as in SVG, or as in names of files: rrggbb. Error for any other text."""
     from ...read.svg.colour import parse_colour
 
-    colour = parse_colour(text.strip())
+    colour = parse_colour(text.strip()) or parse_colour(f"#{text.strip()}")
     if colour is None or not colour.startswith("#"):
         sentence = f"{text[:24]!r} is not a colour; write for example #1a237e or red"
         raise Error(sentence, "colour", code="colour-invalid")
