@@ -153,6 +153,7 @@ def test_flags_have_no_effect_on_a_plan(desk, capsys):
     ("command", "flags"),
     [
         ("convert lines.gcode -o out.ngc", "--units in --select #a --background keep"),
+        ("convert d.svg -o outlines.json --as outline", "--width 3 --join"),
         ("check d.ngc", "--scale 2 --layer Ink --width 3 --colour red --wide clamp --join --speed 5"),
         ("preview d.svg -o seen.png --show strokes", "--colour red --join --detail fine --corners turn --speed 5"),
         ("preview d.svg --all-brushes", "--pen z"),

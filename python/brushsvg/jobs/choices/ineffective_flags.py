@@ -34,8 +34,11 @@ def list_ineffective_flags(source) -> tuple[tuple[str, ...], str]:
 
 
 def report_ineffective_flags(chosen: Choices) -> list[Notice]:
-    """Return notices on the flags that have no effect on this kind of drawing."""
-    return report_flags_without_effect(chosen, *list_ineffective_flags(chosen.input))
+    """Return notices on the flags that have no effect on this kind of drawing, or on its paths as they are read."""
+    notices = report_flags_without_effect(chosen, *list_ineffective_flags(chosen.input))
+    if chosen.paths_as == "outline":
+        notices += report_flags_without_effect(chosen, ("width", "join"), "outlines, as --as outline reads all paths")
+    return notices
 
 
 def report_flags_without_effect(chosen: Choices, flags: Iterable[str], subject: str) -> list[Notice]:
