@@ -13,9 +13,10 @@ from diagnostics import in_json
 from sampling import sample
 
 import brushsvg
-from brushsvg import _core, find_brush
+from brushsvg import _core, brush_like, find_brush
 from brushsvg.calibration.chart.page import chart_page
 from brushsvg.comparison.job_page import job_page
+from brushsvg.model.describe import describe_brush
 from brushsvg.model.plot import brush_picture, brush_picture_on, law_band, new_figure
 
 
@@ -62,6 +63,16 @@ def test_bands_follow_rmse_and_covariance():
     np.testing.assert_allclose(half, 1.959963985 * np.sqrt(0.04 - 0.02 * depths + 0.01 * depths**2))
     assert "95 %" in what
     assert "RMSE" in law_band(brush, "lag", depths)[1]
+
+
+def test_a_law_taken_from_another_brush_is_not_shown_as_measured():
+    """The picture and the description said that a brush nobody measured was measured from 1 to 10 mm."""
+    brush = brush_like("mine", find_brush("round-6"))
+    figure = new_figure((11, 7.2))
+    brush_picture_on(figure, brush)
+    assert {line.get_linestyle() for axes in figure.axes[:4] for line in axes.lines} == {":"}
+    assert "measured at depths" in describe_brush(find_brush("round-6"))
+    assert "measured at depths" not in describe_brush(brush)
 
 
 def test_paint_is_drawn_if_the_brush_has_paint():

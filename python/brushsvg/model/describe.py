@@ -62,7 +62,7 @@ def _describe_law(name: str, meaning: str, law) -> list[str]:
     if math.isfinite(law.floor):
         formula = f"max({polynomial([law.floor, law.floor_slope])}, {formula})"
     known = ["assumed"] if law.assumed else []
-    if law.calibrated_mm:
+    if law.calibrated_mm and not law.assumed:
         known.append("measured at depths {:g} to {:g} mm".format(*law.calibrated_mm))
     if law.rmse_mm is not None:
         known.append(f"RMSE {law.rmse_mm:g} mm")

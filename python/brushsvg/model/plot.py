@@ -77,7 +77,7 @@ def _draw_law(axes, depths, name, meaning, law, band) -> None:
     if band:
         half, what = band
         axes.fill_between(depths, values - half, values + half, color=BAND, alpha=0.25, linewidth=0, label=f"+- {what}")
-    measured = law.calibrated_mm or ((math.inf, -math.inf) if law.assumed else (-math.inf, math.inf))
+    measured = (math.inf, -math.inf) if law.assumed else law.calibrated_mm or (-math.inf, math.inf)
     inside = (depths >= measured[0]) & (depths <= measured[1])
     axes.plot(
         depths,
