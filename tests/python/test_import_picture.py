@@ -48,9 +48,11 @@ def test_png_shows_the_stroke_at_its_place_and_width():
     [
         ("\u05d0\u05d1\u05d2", "\u05d2\u05d1\u05d0"),
         ("\u0645\u0631 2026", "2026 \u0631\u0645"),
-        ("\u05d0\u05d1 (ab) 12", "12 (ab) \u05d1\u05d0"),
+        ("\u05d0\u05d1 (ab) 12", "\u05d1\u05d0 (ab) 12"),
+        ("1  \u05d0\u05d1\u200e: 3 mm", "1  \u05d1\u05d0: 3 mm"),
         ("ab (\u05d0\u05d1) 12", "ab (\u05d1\u05d0) 12"),
-        ("(\u05d0) \u05d1", "\u05d1 (\u05d0)"),
+        ("(\u05d0) \u05d1", "(\u05d0) \u05d1"),
+        ("\u05d0 (\u05d1)", "(\u05d1) \u05d0"),
         ("Gr\u00fc\u00dfe (2)", "Gr\u00fc\u00dfe (2)"),
     ],
 )
@@ -60,6 +62,12 @@ def test_png_shows_hebrew_and_arabic_from_right_to_left(title, from_the_left):
     write_text(made, title, (20, 40), 28, 400, "#000000")
     cv2.putText(expected, from_the_left, (20, 40), (0, 0, 0), cv2.FontFace("sans"), 28, 400)
     assert (made == expected).all() and (made < 255).any()
+
+
+def test_the_width_of_a_stroke_stays_behind_a_hebrew_name():
+    """Without a mark of direction after the name, its letters took the number to the left of them."""
+    words = [text for text, *_ in words_of('<path id="\u05d0\u05d1" d="M10,10 h40" stroke="#000" stroke-width="3"/>')]
+    assert "1  \u05d0\u05d1\u200e: 3 mm" in words
 
 
 def test_a_drawing_without_strokes_still_gives_a_picture():

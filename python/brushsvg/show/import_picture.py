@@ -18,6 +18,7 @@ from ..geometry.cubics import at
 from ..notice_summary import summarize_notices
 from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
+from ..read.text.text_runs import LEFT_TO_RIGHT_MARK
 from ..reporting.label_space import LabelSpace
 from .picture_colours import (
     IMPORT_BACKGROUND,
@@ -60,7 +61,7 @@ class _Canvas:
         self.items.append(("line", points, colour, width))
 
     def text(self, x: float, y: float, words: str, colour: str = TEXT, size: int = FONT_PX) -> None:
-        words = "".join(letter if letter.isprintable() else " " for letter in words)
+        words = "".join(letter if letter.isprintable() or letter == LEFT_TO_RIGHT_MARK else " " for letter in words)
         self.items.append(("text", (x, y), words, colour, size))
 
 
@@ -191,6 +192,7 @@ def _stroke_entry(strokes: list, run: Run) -> str:
     layer = f", {stroke.layer}" if stroke.layer else ""
     widths = f": {width_text(stroke)} mm{count}"
     names = _shorten_middle(names, MAX_ENTRY_LETTERS - len(f"{number}  {widths}"))
+    names += "" if names.isascii() else LEFT_TO_RIGHT_MARK  # the width stays behind a Hebrew or Arabic name
     words = f"{number}  {names}{widths}{layer}"
     return words if len(words) <= MAX_ENTRY_LETTERS else words[: MAX_ENTRY_LETTERS - 3] + "..."
 

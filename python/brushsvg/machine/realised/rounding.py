@@ -87,7 +87,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     if cell.servo:  # first, so that a pose that is left out is never further than least_mm from where the servo stands
         held_rows = _servo_rows(poses[:, :2], least_mm)
         poses[:, :2], exact[:, :2] = poses[held_rows, :2], exact[held_rows, :2]
-        poses[:, 2] = exact[:, 2]  # heights become servo values, whatever the decimals of lengths
+        poses[:, 2] = exact[:, 2]  # heights become servo values and have no decimals
         poses_run = _at_servo_values(poses, cell.servo)
     kept = _select_distinct_poses(poses_run, {row for arc in arcs for row in (arc.first, arc.last)}, least_mm)
     if len(kept) < len(poses):

@@ -14,6 +14,7 @@ _NOT_NEUTRAL = ("L", "R", "EN", "AN")
 _REMOVED = ("BN", "LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _COMMON_SCRIPTS = ("Zyyy", "Zinh", "Zzzz")  # digits, punctuation, accents, unassigned characters
 _SEPARATORS = (("ES", "EN"), ("CS", "EN"), ("CS", "AN"))  # (separator, numbers that it may join)
+LEFT_TO_RIGHT_MARK = "\u200e"
 _MIRRORED = str.maketrans("()[]{}<>«»", ")(][}{><»«")
 _MAX_OPEN_BRACKETS = 63  # UAX #9 (BD16) reads no brackets after this number
 # How much higher the level of a character is than the level of its line, for lines from the left and from the right.
@@ -67,13 +68,15 @@ def sort_from_the_left(runs: list[TextRun]) -> list[TextRun]:
 def sort_letters_from_the_left(line: str) -> str:
     """Return a line with its letters in their order on paper, for a library that does not know directions.
 
-    Brackets between letters from right to left are mirrored.
+    The line itself runs from the left, as a text in SVG does. Brackets between letters from right to left are mirrored.
+    Marks that separate directions are left out.
     """
-    keys = _find_levels(line)
+    keys = _find_levels(f"{LEFT_TO_RIGHT_MARK}{line}")[1:]
     groups = (list(group) for _, group in groupby(range(len(line)), key=keys.__getitem__))
     runs = [TextRun(group[0], group[-1] + 1, "Zyyy", keys[group[0]]) for group in groups]
     parts = ((line[run.start : run.end], run.is_right_to_left) for run in sort_from_the_left(runs))
-    return "".join(part[::-1].translate(_MIRRORED) if is_turned else part for part, is_turned in parts)
+    ordered = "".join(part[::-1].translate(_MIRRORED) if is_turned else part for part, is_turned in parts)
+    return ordered.replace(LEFT_TO_RIGHT_MARK, "")
 
 
 def _find_scripts(line: str) -> list[str]:
