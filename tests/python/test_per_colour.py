@@ -42,9 +42,8 @@ def test_each_colour_gets_its_own_program(desk, capsys):
         assert one.text == (desk / file).read_text(), "the same by --colour and from Python"
         assert brushsvg.convert("word.svg", colour=ink[1:]).text == one.text, "as in the name of the file"
         status, _, reported = in_json(capsys, "check", file, "word.svg")
-        assert status == 1 and {(each.code, each.advice) for _, each in reported} == {
-            ("stroke-not-painted", f"for a program of one colour, give --colour '{ink}'")
-        }
+        assert status == 1 and {each.code for _, each in reported} == {"stroke-not-painted"}
+        assert all(f"--colour '{ink}'" in each.advice for _, each in reported)
 
 
 def test_strokes_of_one_colour_keep_their_positions(desk, capsys):
