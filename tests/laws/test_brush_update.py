@@ -210,11 +210,11 @@ def test_a_lag_that_falls_beyond_the_painted_depths_is_a_reservation():
     half = np.array([0.0, *known.half_width.coefficients[1:]])
     bent = known.lag(3.0) * np.array([0.3, 1.4 / 3.0, -0.7 / 3.0**2])
     updated = updated_by_arcs(known, 3.0, bent, half)
-    assert [each for each in core.remarks(updated.brush) if each.code == "law-falls"]
+    (remark,) = [each for each in core.remarks(updated.brush) if each.code == "law-falls"]
     depths = np.linspace(*updated.brush.depth_range_mm, 401)
     highest = depths[np.argmax(updated.brush.lag(depths))]
-    reason = f"the lag falls from depth {highest:.1f} to 5.0 mm: paint curved strokes at these depths"
-    assert update_report.report(updated).verdict.startswith(f"usable, but {reason}")
+    assert f"{highest:.2f} to 5.00 mm" in remark.sentence
+    assert update_report.report(updated).verdict.startswith(f"usable, but {remark.sentence}")
     straight = updated_by_arcs(known, 3.0, np.array(known.lag.coefficients), half)
     assert update_report.report(straight).verdict == "good"
 

@@ -172,6 +172,13 @@ def test_flags_without_effect_are_reported(desk, capsys, command, flags):
         assert is_reported(reported, f"flag-without-effect {flag}"), (flag, reported)
 
 
+def test_a_flag_without_effect_is_reported_once(desk, capsys):
+    assert main(["convert", "d.svg", "-o", "plan.json"]) == 0
+    flags = "--as outline --width 3 --join".split()
+    _, _, reported = in_json(capsys, "convert", "plan.json", "-o", "again.ngc", *flags)
+    assert len([each for _, each in reported if each.code == "flag-without-effect"]) == 3
+
+
 def test_settings_of_a_project_are_not_reported_as_without_effect(desk, capsys):
     (desk / "brushsvg.toml").write_text(
         'format = "brushsvg/project"\nversion = 1\n[defaults]\nwide = "clamp"\nbackground = "keep"\n'

@@ -335,13 +335,14 @@ def run_calibration(
     name = name or default_name or os.path.splitext(os.path.basename(photos[0]))[0]
     if options.plan is not None:
         return _update_from_job(photos, name, options, stage, warn)
-    of_dabs = is_of_dabs(_load_chart(options))
+    chart = _load_chart(options)
+    of_dabs = is_of_dabs(chart)
     if of_dabs:
         _refuse_stroke_options(options)
     if options.spread is not None:
         read_displacement_mm(options.spread)  # a file that is refused is refused before the photographs are read
     known_brush = None if options.brush is None else _load_known_brush(options.brush, of_dabs)
-    read = read_chart_photographs(photos, options, stage, warn)
+    read = _read_photographs_of(chart, photos, options, stage, warn)
     if of_dabs:
         return _calibrate_from_dabs(photos, read, name, known_brush, warn)
     if known_brush is not None:
@@ -372,7 +373,10 @@ def _load_known_brush(source, of_dabs: bool) -> _core.Brush:
 
 def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> ChartReading:
     """Read the photographs of one painted chart, and warn of missing strokes."""
-    chart = _load_chart(options)
+    return _read_photographs_of(_load_chart(options), photos, options, stage, warn)
+
+
+def _read_photographs_of(chart: Chart, photos: Sequence[str], options, stage, warn: Warn) -> ChartReading:
     with name_file_in_errors(photos[0]):
         stage("reading the photographs")
         read = read_chart_photos(

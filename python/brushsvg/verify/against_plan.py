@@ -73,8 +73,9 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
     ]
     matched = [k for k in partners if k is not None]
     painted_colours = {due[k].colour for k in matched}
-    is_one_colour = len(painted_colours) == 1 and not painted_colours & {due[k].colour for k in unmatched}
-    advice = f"for a program of one colour, give --colour '{painted_colours.pop()}'" if is_one_colour else ""
+    colour = painted_colours.pop() if len(painted_colours) == 1 else ""
+    is_one_colour = colour and colour not in {due[k].colour for k in unmatched}
+    advice = f"for a program of one colour, give --colour '{colour}'" if is_one_colour else ""
     problems += [
         Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted", advice=advice)
         for k in unmatched

@@ -355,8 +355,14 @@ def _fast(way: Way, job: Job):
     if fast.any():
         k = int(fast.argmax())
         yield f"fast while touching: {kinds[k]} at {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
-    fastest = max(job.cell["speeds"][f"{what}_mm_s"] for what in ("travel", "approach", "press"))
-    if (over := ~still & (kinds != "jump") & (speeds > fastest * 1.001 + 0.01 + rounded)).any():
+    fastest, press = (
+        max(job.cell["speeds"][f"{what}_mm_s"] for what in names) for names in (("travel", "approach"), ("press",))
+    )
+    over = ~still & (kinds != "jump") & (speeds > fastest * 1.001 + 0.01 + rounded)
+    # Only the dips and wipes at a vessel are pressed faster than the cell travels.
+    for k in np.flatnonzero(over):
+        over[k] = speeds[k] > press * 1.001 + 0.01 or not _at_vessel(way, k, job)
+    if over.any():
         k = int(over.argmax())
         yield f"faster than any speed of the cell: {speeds[k]:.1f} mm/s, line {legs[way.leg[k]].line}"
     if job.language in SERVOS:

@@ -35,7 +35,7 @@ def report(calibration) -> Report:
         "" if fit.converged else NOT_CONVERGED,
         "" if laws else "the marks show nothing new, so the brush is unchanged",
         f"{plural(len(calibration.strays), 'mark')} had to be left out" if calibration.strays else "",
-        _describe_falling_lag(brush),
+        next((remark.sentence for remark in _core.remarks(brush) if remark.code == "law-falls"), ""),
     ]
     machine_numbers = list_machine_numbers(fit, calibration.covariance, calibration.options)
     lines = [
@@ -56,20 +56,6 @@ def report(calibration) -> Report:
         *(["", *table] if table else []),
     ]
     return Report(verdict([], reservations), tuple(lines), (*details, "", *format_coefficients(brush)))
-
-
-def _describe_falling_lag(brush) -> str:
-    """Return where the lag falls most with depth, or "" if the fall is too small to see in paint."""
-    if not any(remark.code == "law-falls" for remark in _core.remarks(brush)):
-        return ""
-    depths = np.linspace(*brush.depth_range_mm, 401)
-    lags = brush.lag(depths)
-    lowest = int(np.argmax(np.maximum.accumulate(lags) - lags))
-    highest = int(np.argmax(lags[: lowest + 1]))
-    return (
-        f"the lag falls from depth {depths[highest]:.1f} to {depths[lowest]:.1f} mm: paint curved strokes at these "
-        "depths and update the brush again"
-    )
 
 
 def _list_remarks(calibration) -> list[str]:

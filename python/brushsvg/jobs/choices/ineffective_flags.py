@@ -35,9 +35,11 @@ def list_ineffective_flags(source) -> tuple[tuple[str, ...], str]:
 
 def report_ineffective_flags(chosen: Choices) -> list[Notice]:
     """Return notices on the flags that have no effect on this kind of drawing, or on its paths as they are read."""
-    notices = report_flags_without_effect(chosen, *list_ineffective_flags(chosen.input))
+    flags, subject = list_ineffective_flags(chosen.input)
+    notices = report_flags_without_effect(chosen, flags, subject)
     if chosen.paths_as == "outline":
-        notices += report_flags_without_effect(chosen, ("width", "join"), "outlines, as --as outline reads all paths")
+        of_lines = [flag for flag in ("width", "join") if flag not in flags]
+        notices += report_flags_without_effect(chosen, of_lines, "outlines, as --as outline reads all paths")
     return notices
 
 
