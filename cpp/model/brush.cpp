@@ -325,6 +325,12 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
     }
 }
 
+/** Returns a positive number, rounded down to two significant digits. */
+double round_down(double number) {
+    const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+    return std::floor(number / unit) * unit;
+}
+
 }  // namespace
 
 bool Brush::is_rigid() const {
@@ -346,17 +352,16 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
     const auto [narrow, wide] = half_width_range_mm();
     const double rounding = 1e-9 * wide;  // of a width after conversion from text and units
     if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding))
-        throw Error(
-            "width-out-of-reach",
-            format_text("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
-                        2.0 * wide) +
-                " that brush " + name + " can paint: " +
-                (half_width_mm > narrow
-                     ? format_text("draw it narrower, scale the drawing to %.2f, or make the line a filled shape",
-                                   std::floor(100.0 * wide / half_width_mm) / 100.0)
-                     : std::string("draw it wider")) +
-                ", or use another brush",
-            where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
+        throw Error("width-out-of-reach",
+                    format_text("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
+                                2.0 * wide) +
+                        " that brush " + name + " can paint: " +
+                        (half_width_mm > narrow
+                             ? format_text("draw it narrower, scale the drawing to %.2g, make the line a filled shape,",
+                                           round_down(wide / half_width_mm))
+                             : std::string("draw it wider")) +
+                        " or use another brush",
+                    where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
     half_width_mm = std::max(half_width_mm, kMinWidthShare * wide);
     double a = depth_range_mm[0], b = depth_range_mm[1];
     // At depth 0 a brush only touches the paper, and a program that goes no deeper paints nothing.

@@ -204,6 +204,18 @@ def test_a_refusal_is_one_error_and_writes_nothing(desk, choices, expected):
     )
 
 
+@pytest.mark.parametrize("width", [9, 30, 4000, 40000])
+def test_the_advised_scale_makes_a_line_paintable(desk, width):
+    line = f'<path d="M50 50h40" fill="none" stroke="black" stroke-width="{width}"/>'
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
+    Path("wide.svg").write_text(f"{svg}{line}</svg>")
+    with pytest.raises(brushsvg.Error) as refused:
+        brushsvg.convert("wide.svg", sheet=None)
+    factor = float(re.search(r"scale\D+([\d.e-]+)", str(refused.value)).group(1))
+    assert 0.9 * 8.4 < factor * width <= 8.4
+    assert brushsvg.convert("wide.svg", scale=factor).plan.passes
+
+
 @pytest.mark.parametrize(
     ("out", "written"),
     [
