@@ -9,7 +9,7 @@ from svg_text import read
 from brushsvg import _core
 from brushsvg.__main__ import main
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.joining import join_lines
+from brushsvg.strokes.joining import join_lines, report_unjoined_lines
 
 LINE = 'fill="none" stroke="black" stroke-width="4"'
 
@@ -92,3 +92,28 @@ def test_lines_are_joined_only_on_request_and_check_accepts_it(tmp_path, capsys)
         assert re.search(rf"; {count}\b", capsys.readouterr().err)
         assert main(["check", str(program), str(drawing), *flags]) == 0
     assert main(["check", str(program), str(drawing)]) == 1
+
+
+@pytest.mark.parametrize(
+    ("lines", "is_reported"),
+    [
+        ([f"M{x} 10h1" for x in range(9)], True),
+        (["M10 10H40", "M40 10V40", "M10 40H40", "M10 40V10"], True),
+        (["M10 10V40", "M10 40H30"], False),  # an L
+        (["M10 40L20 10", "M20 10L30 40", "M14 30h12"], False),  # an A
+        (["M10 10V40", "M40 10H60V30H40z", "M60 60H80V30H60z"], False),
+    ],
+)
+def test_lines_that_a_program_broke_up_are_reported(lines, is_reported):
+    codes = [notice.code for notice in report_unjoined_lines(of(*lines))]
+    assert codes == ["lines-meet"] * is_reported
+
+
+@pytest.mark.parametrize(("options", "is_reported"), [([], True), (["--join"], False)])
+def test_joined_lines_are_not_reported(tmp_path, capsys, options, is_reported):
+    drawing = tmp_path / "line.svg"
+    parts = "".join(f'<path d="M{x} 20h2" {LINE}/>' for x in range(10, 50, 2))
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" width="99mm" height="99mm" viewBox="0 0 99 99">'
+    drawing.write_text(f"{svg}{parts}</svg>")
+    assert main(["convert", str(drawing), *options, "-o", str(tmp_path / "o.ngc")]) == 0
+    assert ("--join" in "".join(capsys.readouterr())) == is_reported

@@ -55,6 +55,20 @@ def join_lines(strokes: list) -> tuple[list, list[Notice]]:
     return joined_strokes, notices
 
 
+def report_unjoined_lines(strokes: list) -> list[Notice]:
+    """Report a drawing most of whose lines meet another line at both ends, as curves that a CAD program broke up do."""
+    lines = [stroke for stroke in strokes if _is_open_line(stroke)]
+    if not lines:
+        return []
+    ends_mm = np.array([[line.middle_mm[0, :2], line.middle_mm[-1, 6:]] for line in lines]).reshape(-1, 2)
+    _, places, counts = np.unique(np.round(ends_mm / MAX_GAP_MM), axis=0, return_inverse=True, return_counts=True)
+    meets = (counts[places.ravel()] > 1).reshape(-1, 2).all(axis=1)
+    if 2 * meets.sum() <= len(strokes):
+        return []
+    sentence = f"{meets.sum()} of {len(strokes)} lines meet other lines at both ends, and each is painted as a stroke"
+    return [Notice(lines[meets.argmax()].id, sentence, code="lines-meet", advice="--join paints such lines as one")]
+
+
 class _Chain:
     """A line that grows at both ends.
 

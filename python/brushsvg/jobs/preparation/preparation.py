@@ -26,7 +26,7 @@ from ...read import layout
 from ...read.design import Design, Notice
 from ...strokes.corners import lifted_at_corners
 from ...strokes.extraction import strokes as strokes_of
-from ...strokes.joining import join_lines
+from ...strokes.joining import join_lines, report_unjoined_lines
 from ...strokes.stroke_search import search_strokes
 from ...strokes.uncovered_areas import notices_of_areas, uncovered_areas
 from ...strokes.wide_shapes import find_wide_lines, within_reach
@@ -218,6 +218,8 @@ def _find_strokes(design: Design, brush, options: Options) -> tuple[list, list[N
     if options.join:
         strokes, joint_notices = join_lines(strokes)
         notices += joint_notices
+    else:
+        notices += report_unjoined_lines(strokes)
     if options.corners == "auto" and _leads_paint(options):
         strokes = lifted_at_corners(strokes, brush)
     return strokes, notices
