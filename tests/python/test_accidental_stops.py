@@ -149,3 +149,16 @@ def test_a_short_rise_at_the_end_of_a_stroke_is_not_a_stop(desk):
     Path("a.json").write_text(brushsvg.write_plan(plan))
     brushsvg.convert("a.json", "a.ebb", cell="mine.toml")
     assert brushsvg.check("a.ebb", "a.json", cell="mine.toml").problems == ()
+
+
+def test_the_start_of_a_lift_within_a_part_of_the_servo_is_not_a_stop(desk):
+    """A lift begins from rest, and the servo's values do not show within which part."""
+    cell = find_cell("axidraw-ebb")
+    cell = replace(cell, servo=replace(cell.servo, step_mm=0.25), speeds=replace(cell.speeds, press_mm_s=26.3))
+    Path("mine.toml").write_text(write_cell(cell))
+    down = [(54.672, 41.556, 0), (59.029, 37.431, -1.582), (61.3, 35.28, -0.966), (61.433, 35.154, -1.017)]
+    up = [(61.63, 34.967, -1.668), (61.814, 34.793, -1.471), (62.28, 34.352, -0.424), (62.243, 34.386, 0)]
+    plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", np.array(down + up), 20)])
+    Path("a.json").write_text(brushsvg.write_plan(plan))
+    brushsvg.convert("a.json", "a.ebb", cell="mine.toml")
+    assert brushsvg.check("a.ebb", "a.json", cell="mine.toml").problems == ()

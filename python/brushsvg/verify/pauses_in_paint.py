@@ -61,6 +61,9 @@ def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Pr
     at its middle. The program does not state the change of height along a part: it is at most the change from the
     middle of the previous part to the middle of the next one, or a step of the servo where the brush turns from down to
     up or the stroke ends. The tip is assumed to move over this distance at its maximum speed.
+
+    The lift begins from rest near the place where the brush turns from down to up for the last time. The servo's values
+    show this place to within a part, so that part and its neighbours have the time to stop and start again.
     """
     servo = program.cell.servo
     heights_mm = np.array([height_at(servo, act.same[0]) for act in acts])
@@ -68,7 +71,11 @@ def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Pr
     before_mm, after_mm = rises_mm[:-1], rises_mm[1:]
     most_mm = np.abs(before_mm) + np.abs(after_mm)
     turns = (before_mm * after_mm <= 0) & (most_mm > 0)
-    return np.hypot(ways_mm, np.where(turns, np.maximum(most_mm, servo.step_mm), most_mm)) / program.touching_mm_s
+    ways_mm = np.hypot(ways_mm, np.where(turns, np.maximum(most_mm, servo.step_mm), most_mm))
+    most_s = ways_mm / program.touching_mm_s
+    for last in np.flatnonzero((before_mm <= 0) & (after_mm > 0))[-1:]:
+        most_s[max(last - 1, 0) : last + 2] += program.touching_mm_s / (2 * program.cell.speeds.acceleration_mm_s2)
+    return most_s
 
 
 def _moves_by_stroke(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:
