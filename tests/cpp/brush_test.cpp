@@ -128,7 +128,7 @@ TEST_CASE("width and depth are inverse, and a refusal names the reachable range"
     const auto wide = ::refusal([&] { brush.depth_for_half_width(5.0, "p1"); });
     REQUIRE(agrees(wide, "width-out-of-reach", "p1", {"10.000", "[0.000, 8.400]", "0.84"}));
     CHECK(*wide->value() == doctest::Approx(10.0));
-    CHECK(agrees(::refusal([&] { brush.depth_for_half_width(5.95, "p1"); }), "width-out-of-reach", "p1", {"0.70"}));
+    CHECK(agrees(::refusal([&] { brush.depth_for_half_width(5.95, "p1"); }), "width-out-of-reach", "p1", {"0.7"}));
     CHECK(shipped("rigid").depth_for_half_width(7.0, "") == shipped("rigid").paint_depth_mm);
 }
 

@@ -113,11 +113,13 @@ def judged(
         # A stroke that is split into loads has another plan, and a coarse servo has another path.
         wrong += unlike(way, job)
     if any((job.machine or {}).get("backlash_mm", ())):
-        exact = put(folder / "exact.toml", write_cell(without_backlash(cell)))
+        exact_cell = without_backlash(cell)
+        exact = put(folder / "exact.toml", write_cell(exact_cell))
         twin = folder / f"exact{suffix}"
         if refusals := converted(source, twin, "--cell", exact, *flags):
             wrong.append(f"no program without backlash: {refusals}")
-        else:
+        elif not is_counted or _plan_of(source, exact_cell, flags, folder) == plan.read_text():
+            # Backlash splits arcs. This moves the start of a load, and a brush that runs dry is pressed deeper there.
             of = job_for(exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
             wrong += apart(way, way_of(of.interpret(_whole(twin)), of), cell, has_circles)
@@ -126,6 +128,13 @@ def judged(
     denied = check(program, *drawing, "--cell", toml, *words)
     assert not any(CRASHED in refusals for refusals in denied), denied
     return Judged((), tuple(wrong), tuple(denied), job)
+
+
+def _plan_of(source: Path, cell, flags: tuple[str, ...], folder: Path) -> str:
+    plan = folder / "exact.json"
+    raised = put(folder / "exact-raised.toml", write_cell(with_raised_paper(cell, flags)))
+    converted(source, plan, "--cell", raised, *without(flags, "--z-offset"))
+    return plan.read_text() if plan.exists() else ""
 
 
 def _parts(program: Path) -> list[Path]:
