@@ -360,6 +360,17 @@ def test_text_is_centred_on_a_given_sheet_or_refused():
     assert agrees(reported, "text-does-not-fit '60 x 7.9 mm'")
 
 
+@pytest.mark.parametrize("text", ["T", "TT\nI", "TIT\nT\nT\nT"])
+@pytest.mark.parametrize("sheet_mm", [(4.9, 60), (60, 7.9), (3.3, 3.1), (1.01, 60)])
+def test_the_advised_size_fits_and_is_hardly_smaller_than_the_largest(text, sheet_mm):
+    reported = refusal(text, svg_font(), size_mm=123, sheet_mm=sheet_mm)
+    size_mm = float(re.search(r"--size ([\d.]+)", reported.advice).group(1))
+    assert drawn(text, size_mm=size_mm, sheet_mm=sheet_mm)
+    assert agrees(refusal(text, svg_font(), size_mm=size_mm * 1.02, sheet_mm=sheet_mm), "text-does-not-fit")
+    reported = refusal("T", svg_font(), size_mm=10, width_mm=5, sheet_mm=(4.9, 60))
+    assert agrees(reported, "text-does-not-fit --width --sheet")
+
+
 def test_overlong_text_is_refused():
     assert agrees(refusal("I" * 100_001, svg_font()), "text-too-long 100001 100000")
     assert agrees(refusal("T" * 3000, svg_font(), size_mm=1000), "text-too-long '[0, 1e6] mm'")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -20,7 +21,8 @@ _MAX_STRAIGHT_ERROR_MM = 1e-6  # distance of handles from the thirds of a line d
 def svg_document(
     typeset: TypesetText,
     title: str,
-    leading_mm: float,
+    size_mm: float,
+    line_spacing: float,
     width_mm: float,
     sheet_mm: tuple[float, float] | None,
     script: str = "auto",
@@ -29,7 +31,8 @@ def svg_document(
 
     The ink is in the middle of the sheet.
 
-    leading_mm: distance of the lines.
+    size_mm: the em of the font, with which the text was typeset.
+    line_spacing: distance of the lines in ems.
     width_mm: width of the strokes, 0 for filled shapes.
     sheet_mm: (width, height), None for the bounding box of the ink plus a margin of 20 mm.
     script: the script of all glyphs; "auto": the script of each glyph.
@@ -37,7 +40,7 @@ def svg_document(
     Raises Error if there is no ink or too much ink, or if the ink does not fit the sheet.
     """
     placed = [
-        (glyph, np.array([glyph.x_mm, glyph.y_mm + row * leading_mm]))
+        (glyph, np.array([glyph.x_mm, glyph.y_mm + row * line_spacing * size_mm]))
         for row, line in enumerate(typeset.lines)
         for glyph in line
     ]
@@ -55,12 +58,15 @@ def svg_document(
     else:
         sheet = np.array(sheet_mm)
         if (size > sheet + 1e-9).any():
+            too_large = size > sheet
+            fitting_mm = size_mm * ((sheet - width_mm) / (size - width_mm))[too_large].min()
+            smaller = f"--size {_round_down(fitting_mm)}" if fitting_mm > 0 else "a smaller --width"
             raise Error(
                 f"the text takes {size[0]:.2f} x {size[1]:.2f} mm, more than the sheet's "
                 f"{sheet[0]:g} x {sheet[1]:g} mm",
                 "text",
                 code="text-does-not-fit",
-                advice="give a smaller --size or a larger --sheet",
+                advice=f"give {smaller} or a larger --sheet",
             )
     shift = (sheet - lower - upper) / 2
     style = (
@@ -84,6 +90,12 @@ def svg_document(
             "</svg>\n",
         )
     )
+
+
+def _round_down(value: float) -> str:
+    """Return a positive number with three significant digits, rounded down."""
+    unit = Decimal(1).scaleb(Decimal(value).adjusted() - 2)
+    return f"{(Decimal(value) // unit * unit).normalize():f}"
 
 
 def _script_attribute(glyph: PlacedGlyph, script: str) -> str:

@@ -83,7 +83,7 @@ def text_svg(
         sentence = f"the width {width_mm:g} mm has no effect: the font has outlines, not single lines"
         notices.append(Notice("font", sentence, code="width-without-effect"))
     stroke_mm = 0.0 if typeset.filled else width_mm or 1.0
-    return svg_document(typeset, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
+    return svg_document(typeset, text, size_mm, line_spacing, stroke_mm, sheet_mm, script), notices
 
 
 def _checked(name: str, value: float, maximum: float, unit: str = "") -> float:
