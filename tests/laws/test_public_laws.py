@@ -229,6 +229,17 @@ def test_impossible_arguments_are_refused(call, code):
     assert refused.value.code == code
 
 
+def test_depths_that_a_brush_cannot_have_are_refused():
+    lag = brushsvg.find_brush("round-6").lag  # its polynomial gives 7100 mm at 50 mm
+    for call in (
+        lambda: laws.follow([[0, 0], [10, 0]], [2, 50], lag),
+        lambda: laws.alpha_on_ramp(1.0, 5.0, lag, 2.0, 50.0),
+        lambda: laws.alpha_on_ramp(1.0, 5.0, lag, [2.0, 50.0], 3.0),
+    ):
+        with refused("depth-out-of-range"):
+            call()
+
+
 @pytest.mark.parametrize("integer", [False, True])
 def test_masked_entries_are_refused_as_nan_is(integer):
     values = np.ma.array([3, 99, 5], int if integer else float, mask=[False, True, False])

@@ -55,14 +55,14 @@ def alpha_on_ramp(
     as 50 or more: the heading is the direction of motion to 1e-21. The loose rule is not applied; follow applies
     it.
 
-    Raises Error for numbers outside of these ranges, shapes that do not broadcast, and a lag that is negative, or 0
-    in part, between the depths.
+    Raises Error for numbers outside of these ranges, depths that the brush cannot have, shapes that do not
+    broadcast, and a lag that is negative, or 0 in part, between the depths.
     """
     alpha0 = numbers(alpha0_rad, "alpha0 [rad]", -MAX_ANGLE_RAD, MAX_ANGLE_RAD)
     s = numbers(s_mm, "the way s [mm]", 0.0, FARTHEST_MM)
     depths = [numbers(depth, "the depth [mm]", 0.0, DEEPEST_MM) for depth in (depth0_mm, depth1_mm)]
     alpha0, s, *depths = together(alpha0, s, *depths)
-    return _core.lag.alpha_after(alpha0, _core.lag.exponent(s, *depths, _as_profile(law)))
+    return _core.lag.alpha_after(alpha0, _core.lag.exponent(s, *depths, _as_profile(law, depths)))
 
 
 def alpha_after_turn(alpha0_rad: ArrayLike, s_mm: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
@@ -140,7 +140,8 @@ def follow(
     patch is at first, no further than the lag; None: the brush is set down there. The print separates loose from
     taut by an epsilon of 0.01 mm, which fine steps never reach; here the moments are roots.
 
-    Raises Error for other shapes and numbers, and a lag that is negative, or 0 in part, at the depths passed.
+    Raises Error for other shapes and numbers, depths that the brush cannot have, and a lag that is negative, or 0 in
+    part, at the depths passed.
     """
     tcp = numbers(tcp_mm, "a place of the TCP [mm]", -FARTHEST_MM, FARTHEST_MM)
     depth = numbers(depth_mm, "the depth [mm]", 0.0, DEEPEST_MM)
@@ -153,12 +154,13 @@ def follow(
         contact = numbers(contact_mm, "the contact [mm]", -FARTHEST_MM, FARTHEST_MM)
         if contact.shape != (2,):
             raise Error(f"a contact of shape {contact.shape} is not (2,)", code="sizes-differ")
-    rows = _core.lag.follow(tcp, depth, _as_profile(law), contact)
+    rows = _core.lag.follow(tcp, depth, _as_profile(law, depth), contact)
     return Followed(*(frozen(rows[name]) for name in ("contact_mm", "heading_rad", "taut")))
 
 
-def _as_profile(law) -> _core.Profile:
+def _as_profile(law, depths_mm) -> _core.Profile:
     if isinstance(law, _core.Profile):
+        law(np.asarray(depths_mm))  # refuses depths that the brush cannot have
         return law
     lag = numbers(law, "the lag [mm]", 0.0, FARTHEST_MM)
     if lag.ndim > 0:
