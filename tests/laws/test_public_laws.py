@@ -240,6 +240,11 @@ def test_depths_that_a_brush_cannot_have_are_refused():
             call()
 
 
+def test_a_degree_from_an_array_is_a_degree():
+    depth, value = [1, 2, 4, 6, 8], [4, 5, 7, 8, 9]
+    assert laws.fit_law(depth, value, np.arange(3)[2]) == laws.fit_law(depth, value, 2)
+
+
 @pytest.mark.parametrize("integer", [False, True])
 def test_masked_entries_are_refused_as_nan_is(integer):
     values = np.ma.array([3, 99, 5], int if integer else float, mask=[False, True, False])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Integral
 
 from numpy.typing import ArrayLike
 
@@ -24,11 +25,12 @@ def fit_law(
 
     This fits (25) with degree 4, (24) with degree 3 and floor 0, and (26) with degree 1 through zero.
 
-    depth_mm, value_mm: (n,), in [0, 1000] and [-1e6, 1e6]; n is greater than the number of coefficients. degree: of
+    depth_mm, value_mm: (n,), in [0, 1000] and [-1e6, 1e6]; n is at least the number of coefficients. degree: of
     the polynomial. through_zero: no constant term. floor_mm: the law is never less; None where there is no floor.
     absolute: least absolute residuals, which outliers move less (section 3.3), otherwise least squares. Returns a
     LawFit: law (a Profile with half_interval_95 and rmse_mm), covariance, residual_mm, r_squared,
-    degrees_of_freedom, held.
+    degrees_of_freedom, held. If n is the number of coefficients, half_interval_95 and covariance are empty, and rmse_mm
+    is None.
 
     Raises Error for other numbers and for values that leave the law undetermined.
     """
@@ -37,12 +39,12 @@ def fit_law(
     value = numbers(value_mm, "the value [mm]", -FARTHEST_MM, FARTHEST_MM)
     if depth.ndim != 1 or value.ndim != 1:
         raise Error("depths and values must be lists of numbers", code="wrong-type")
-    require_type(degree, int, "a degree")
+    require_type(degree, Integral, "a degree")
     need_truth(through_zero, "through_zero")
     need_truth(absolute, "absolute")
     shape = _core.LawShape(
         (float(depth.min(initial=0.0)), float(depth.max(initial=1.0))),
-        max(-1, min(degree, 99)),
+        int(max(-1, min(degree, 99))),
         through_zero=bool(through_zero),
         floor=-math.inf if floor_mm is None else need_number(floor_mm, "the floor [mm]", -FARTHEST_MM, FARTHEST_MM),
         norm=_core.Norm.absolute if absolute else _core.Norm.squares,
