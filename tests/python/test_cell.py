@@ -540,3 +540,26 @@ def test_a_number_of_thousands_of_digits_is_refused(line):
     lines = [each for each in write_cell(find_cell()).split("\n") if not each.startswith(key)]
     with refused("not-toml"):
         parse_cell("\n".join([line.format(f"0x{'f' * 5000}"), *lines]))
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "value"),
+    [
+        ("heights", "safe_mm", np.float32(12)),
+        ("heights", "safe_mm", np.linspace(10, 14, 3)[1]),
+        ("paper", "origin_mm", np.array([1.0, 2.0, 3.0])),
+        ("paper", "origin_mm", tuple(np.array([1.0, 2.0, 3.0]))),
+        ("workspace", "keep_out_mm", np.array([[[0, 0, 0], [5, 5, 5.0]]])),
+    ],
+)
+def test_numbers_of_numpy_in_a_cell_are_written_as_numbers(table, key, value):
+    cell = find_cell()
+    changed = replace(cell, **{table: replace(getattr(cell, table), **{key: value})})
+    written = getattr(getattr(parse_cell(write_cell(changed)), table), key)
+    assert np.array_equal(written, value)
+
+
+def test_whole_numbers_and_truths_of_numpy_in_a_cell_are_written_as_such():
+    cell = replace(find_cell(), decimals=np.int64(4), pause_per_colour=np.bool_(False))
+    written = parse_cell(write_cell(cell))
+    assert (written.decimals, written.pause_per_colour) == (4, False)

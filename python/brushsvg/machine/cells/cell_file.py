@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 
-from ...errors import Error, format_value, name_file_in_errors, require_type
+from ...errors import Error, as_listed, format_value, name_file_in_errors, require_type
 from ...files import decode_text, find_file, names_in, read_bytes, toml_document
 from ...suggestions import did_you_mean
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries_of, required_keys_of, tables_of
@@ -79,7 +79,10 @@ def parse_cell(text: str) -> Cell:
 
 
 def write_cell(cell: Cell) -> str:
-    """Return the cell as TOML for parse_cell, each key with an explanation."""
+    """Return the cell as TOML for read_cell, each key with an explanation.
+
+    Numbers are not checked. read_cell, convert and write_program refuse a cell that is not valid.
+    """
     require_type(cell, Cell, "a cell")
     lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_table_lines(cell)]
     for name, table in tables_of(cell).items():
@@ -169,7 +172,7 @@ def _table_lines(table) -> list[str]:
     lines = []
     for item in fields(table):
         entry = item.metadata.get("entry")
-        value = getattr(table, item.name)
+        value = _without_numpy(getattr(table, item.name))
         if entry is None or value == item.default:
             continue
         text = f"{item.name} = {_to_toml(value)}"
@@ -178,6 +181,12 @@ def _table_lines(table) -> list[str]:
         else:
             lines += [*_comment_lines(entry.help), text]
     return lines
+
+
+def _without_numpy(value):
+    """Return the numbers and arrays of numpy, also within tuples and lists, as Python's numbers and tuples."""
+    value = as_listed(value)
+    return tuple(map(_without_numpy, value)) if isinstance(value, (tuple, list)) else value
 
 
 def _comment_lines(text: str) -> list[str]:
