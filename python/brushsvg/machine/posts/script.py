@@ -106,6 +106,7 @@ def write_points(
     blends: np.ndarray,
     is_blended: np.ndarray,
     blend_pattern: str = "",
+    units_per_mm: float = 1.0,
 ) -> Iterator[str]:
     """Yield the lines to the points of a move.
 
@@ -113,24 +114,27 @@ def write_points(
     are those of other moves.
 
     upright: (3, 3) rotation of the tool with an upright brush.
-    blends, is_blended: (n,) distance of each point's blend, and whether its line names the distance.
+    blends, is_blended: (n,) distance of each point's blend in the language's unit, and whether its line names the
+    distance.
     blend_pattern: how a distance is written, by default as a coordinate.
+    units_per_mm: how many units of the language a millimetre has.
     """
     number = f"%.{decimals}f"
     blend_pattern = blend_pattern or number
     point = words.place(", ".join([number] * 3), "")
     if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]]) * units_per_mm
         yield from format_rows(words.circle(point), values, decimals)
         return
+    points = move.points_mm * units_per_mm
     if move.axes is not None:
         rotations = tool_rotations_at(move, upright)
-        for place, turned, blend, names_blend in zip(move.points_mm, rotations, blends, is_blended, strict=True):
+        for place, turned, blend, names_blend in zip(points, rotations, blends, is_blended, strict=True):
             text = words.place(join_numbers(place, decimals), "" if turned is None else words.angles(turned))
             yield words.line(text, blend_pattern % blend if names_blend else "") + "\n"
         return
     plain, blended = words.line(point, ""), words.line(point, blend_pattern)
-    columns = [move.points_mm, blends]
+    columns = [points, blends]
     if "%" in blended[: blended.index(point)]:
         columns.reverse()  # the language names the blend before the place
     values = np.column_stack(columns)
@@ -138,7 +142,7 @@ def write_points(
         if is_blended[run[0]]:
             yield from format_rows(blended, values[run], decimals)
         else:
-            yield from format_rows(plain, move.points_mm[run], decimals)
+            yield from format_rows(plain, points[run], decimals)
 
 
 def upright_tool_rotation(spin_deg: float) -> np.ndarray:

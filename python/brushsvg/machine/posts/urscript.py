@@ -11,10 +11,17 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
-from ..moves import Move, Program, Wait, via_point
+from ..moves import Move, Program, Wait
 from .program_parts import split_into_parts
-from .script import QUOTE_REPLACEMENTS, LanguageWords, tool_rotations_at, upright_tool_rotation
-from .text import format_number, format_rows, plain_text
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    PointWords,
+    join_numbers,
+    upright_tool_rotation,
+    write_points,
+)
+from .text import format_number, plain_text
 
 LINE_LIMIT = 100
 MIN_BLEND_M = 5e-6  # a smaller blend is written as 0
@@ -112,44 +119,18 @@ def _watch_thread(force_n: float) -> str:
 
 def _move_lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) -> Iterator[str]:
     speed = format_number(max(np.floor(move.speed_mm_s * M_PER_MM * 1e5) / 1e5, 1e-5), 5)
-    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
-    if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]]) * M_PER_MM
-        yield from format_rows(
-            f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
-        )
-        return
-    if move.axes is not None:
-        yield from _tilted_lines(move, upright, f"a={acceleration}, v={speed}", decimals)
-        return
-    points = move.points_mm * M_PER_MM
-    if move.blends_mm is None or len(points) == 1:
-        yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points, decimals)
-        return
-    blends = move.blends_mm[:-1, None] * M_PER_MM
-    blends = np.where(blends < MIN_BLEND_M, 0.0, blends)
+    at_most = f"a={acceleration}, v={speed}"
+    words = PointWords(
+        lambda turned: _rotation_text(turned, decimals),
+        lambda place, blend: f"  movep({place}, {at_most}, r={blend})" if blend else f"  movel({place}, {at_most})",
+        lambda place: f"  movec({place}, {place}, {at_most}, r=0.0, mode=1)",
+    )
+    count = len(move.points_mm)
+    blends = np.zeros(count) if move.blends_mm is None else move.blends_mm * M_PER_MM
     # movep keeps the speed of the tool. The last move stops, because the next one may turn back, which movep cannot.
-    values = np.hstack([points[:-1], blends])
-    yield from format_rows(f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals)
-    yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
-
-
-def _tilted_lines(move: Move, upright: np.ndarray, at_most: str, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush.
-
-    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
-    moves.
-    """
-    last = len(move.points_mm) - 1
-    blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M_PER_MM
-    for k, (point, turned) in enumerate(zip(move.points_mm * M_PER_MM, tool_rotations_at(move, upright), strict=True)):
-        place = ", ".join(format_number(value, decimals) for value in point)
-        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_rotation_text(turned, decimals)})"
-        if move.blends_mm is None or k == last:
-            yield f"  movel({place}, {at_most})\n"
-        else:
-            blend = blends[k] if blends[k] >= MIN_BLEND_M else 0.0
-            yield f"  movep({place}, {at_most}, r={format_number(blend, decimals)})\n"
+    has_blends = (np.arange(count) < count - 1) & (move.blends_mm is not None)
+    blends = np.where(blends < MIN_BLEND_M, 0.0, blends)
+    yield from write_points(move, upright, words, decimals, blends, has_blends, units_per_mm=M_PER_MM)
 
 
 def _wait_lines(step: Wait, is_watched: bool) -> str:
@@ -164,9 +145,8 @@ def _wait_lines(step: Wait, is_watched: bool) -> str:
 
 
 def _pose_text(frame: np.ndarray, decimals: int) -> str:
-    place = ", ".join(format_number(value * M_PER_MM, decimals) for value in frame[:3, 3])
-    return f"p[{place}, {_rotation_text(frame[:3, :3], decimals)}]"
+    return f"p[{join_numbers(frame[:3, 3] * M_PER_MM, decimals)}, {_rotation_text(frame[:3, :3], decimals)}]"
 
 
 def _rotation_text(turned: np.ndarray, decimals: int) -> str:
-    return ", ".join(format_number(value, decimals) for value in rotation_vector(turned))
+    return join_numbers(rotation_vector(turned), decimals)
