@@ -1,14 +1,11 @@
-"""Draw an overview of a drawing as it was read: numbered strokes with direction and width, and every warning.
-
-The picture is arranged once, in px with y down, and then written as SVG or PNG.
-"""
+"""Draw an overview of a drawing as it was read: numbered strokes with direction and width, and every warning."""
 
 from __future__ import annotations
 
 import math
+import re
 import textwrap
-from dataclasses import dataclass, field
-from xml.sax.saxutils import escape
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +17,7 @@ from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
 from ..read.text.text_runs import LEFT_TO_RIGHT_MARK
 from ..reporting.label_space import LabelSpace
+from .canvas import FONT_PX, Canvas, draw_canvas
 from .picture_colours import (
     IMPORT_BACKGROUND,
     IMPORT_MUTED_TEXT,
@@ -30,39 +28,28 @@ from .picture_colours import (
     WARNING_TEXT,
     WHITE,
 )
-from .stroke_labels import LABEL_CELL_PX, Run, group_runs, mark_cells, start_direction, width_text
 
-SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
+SHEET_PX, MARGIN_PX, LINE_PX = 1500, 40, 30
 MAX_LISTED = 120  # entries in each list
 MAX_ENTRY_LETTERS = 46  # of an entry for a stroke
 LETTER_WIDTH_PX = 10.0  # width per letter of the lists, between the widths of OpenCV's font and of browsers
 MAX_LABEL_DISTANCE_PX = 22.0  # from a stroke's start to its number
 MIN_LABEL_SPACING_PX = 80.0  # between two numbered dashes of one element
 TOLERANCE_MM = 0.02
+MIN_STROKES_IN_RUN = 6  # smallest number of similar strokes that become one entry
+LABEL_CELL_PX = 8.0  # half the height of a number
 
 
-@dataclass
-class _Canvas:
-    """The items to draw, in order.
+@dataclass(frozen=True)
+class _Run:
+    """Strokes first to last that are one entry of the list.
 
-    An item is ("area", rings, colour, opacity), ("line", points, colour, width) or ("text", (x, y), words, colour,
-    size).
+    is_one_element: they are sub-paths or dashes of one element.
     """
 
-    width: float
-    height: float = 0.0
-    items: list[tuple] = field(default_factory=list)
-
-    def area(self, rings, colour: str, opacity: float = 1.0) -> None:
-        if rings:
-            self.items.append(("area", rings, colour, opacity))
-
-    def line(self, points: np.ndarray, colour: str, width: float) -> None:
-        self.items.append(("line", points, colour, width))
-
-    def text(self, x: float, y: float, words: str, colour: str = TEXT, size: int = FONT_PX) -> None:
-        words = "".join(letter if letter.isprintable() or letter == LEFT_TO_RIGHT_MARK else " " for letter in words)
-        self.items.append(("text", (x, y), words, colour, size))
+    first: int
+    last: int
+    is_one_element: bool = False
 
 
 def draw_import_picture(suffix: str, design: Design, strokes: list, notices: list[Notice]) -> bytes:
@@ -71,16 +58,16 @@ def draw_import_picture(suffix: str, design: Design, strokes: list, notices: lis
     strokes: the strokes of the design, may be empty; notices: all warnings.
     """
     canvas = _arrange_picture(design, strokes, notices)
-    return _write_svg(canvas).encode() if suffix == ".svg" else _write_png(canvas)
+    return draw_canvas(suffix, canvas)
 
 
-def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
+def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> Canvas:
     w, h = design.sheet_mm
     box = bounds_mm(design.elements)
     x0, y0 = min(0.0, float(box[0])), min(0.0, float(box[1]))
     x1, y1 = max(w, float(box[2])), max(h, float(box[3]))
     px_per_mm = SHEET_PX / max(x1 - x0, y1 - y0)
-    canvas = _Canvas(max((x1 - x0) * px_per_mm, 900) + 2 * MARGIN_PX)
+    canvas = Canvas(max((x1 - x0) * px_per_mm, 900) + 2 * MARGIN_PX, background=IMPORT_BACKGROUND)
     top = MARGIN_PX + 2 * LINE_PX
 
     def place(points_mm: np.ndarray) -> np.ndarray:
@@ -100,7 +87,7 @@ def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _C
     for element in design.elements:
         if element.fill_rule:
             canvas.area([place(_flatten_cubics(subpath.cubics)) for subpath in element.subpaths], SHAPE_FILL)
-    runs = group_runs(strokes)
+    runs = _group_runs(strokes)
     inks = _choose_inks(runs)
     for stroke, ink in zip(strokes, inks, strict=True):
         rings = _core.target_outline(stroke, TOLERANCE_MM)
@@ -115,7 +102,7 @@ def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _C
     return canvas
 
 
-def _choose_inks(runs: list[Run]) -> list[str]:
+def _choose_inks(runs: list[_Run]) -> list[str]:
     inks: list[str] = []
     number = 0
     for run in runs:
@@ -132,7 +119,7 @@ def _flatten_cubics(cubics: np.ndarray) -> np.ndarray:
     return np.vstack([cubics[0, :1], at(t, p0, p1, p2, p3).reshape(-1, 2)])
 
 
-def _draw_direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
+def _draw_direction(canvas: Canvas, line: np.ndarray, ink: str) -> None:
     """Draw a stroke's middle line with arrows, and a dot at its start."""
     length = polylines.length(line)
     if length > 0:
@@ -145,13 +132,12 @@ def _draw_direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
                 along = (tip - tail) / norm
                 side = np.array([-along[1], along[0]]) * head * 0.45
                 canvas.area([np.array([tip, tail + side, tail - side])], ink)
-    dot = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-    canvas.area([line[0] + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
+    canvas.dot(line[0], 4.0, ink)
 
 
-def _draw_numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float) -> None:
+def _draw_numbers(canvas: Canvas, lines: list[np.ndarray], inks: list[str], runs: list[_Run], bottom: float) -> None:
     """Write strokes' numbers near their starts, best behind, where there is room; few of many dashes."""
-    space = LabelSpace(mark_cells(lines, (canvas.width, bottom)), LABEL_CELL_PX, (0, 0, canvas.width, bottom))
+    space = LabelSpace(_mark_cells(lines, (canvas.width, bottom)), LABEL_CELL_PX, (0, 0, canvas.width, bottom))
     for run in runs:
         last_start = None
         for number in range(run.first, run.last + 1):
@@ -161,14 +147,14 @@ def _draw_numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], run
             label = str(number + 1)
             size = (11.0 * len(label), 16.0)
             placed = space.place(
-                start, [size], -start_direction(lines[number]), reach=MAX_LABEL_DISTANCE_PX, may_cover=False
+                start, [size], -_start_direction(lines[number]), reach=MAX_LABEL_DISTANCE_PX, may_cover=False
             )
             if placed is not None:
                 canvas.text(placed.left, placed.top + 15, label, inks[number], 18)
                 last_start = start
 
 
-def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Run], y: float) -> float:
+def _list_strokes(canvas: Canvas, strokes: list, inks: list[str], runs: list[_Run], y: float) -> float:
     entries = [_stroke_entry(strokes, run) for run in runs[:MAX_LISTED]]
     room = _letters_per_line(canvas)
     columns = min(3, max(1, room // (max(map(len, entries), default=0) + 2)))
@@ -183,14 +169,14 @@ def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Ru
     return y + LINE_PX / 2
 
 
-def _stroke_entry(strokes: list, run: Run) -> str:
+def _stroke_entry(strokes: list, run: _Run) -> str:
     stroke = strokes[run.first]
     number, names, count = f"{run.first + 1}", stroke.id, ""
     if run.last > run.first:
         number, names = f"{number}-{run.last + 1}", f"{names} ... {strokes[run.last].id}"
         count = f" ({run.last - run.first + 1} strokes)"
     layer = f", {stroke.layer}" if stroke.layer else ""
-    widths = f": {width_text(stroke)} mm{count}"
+    widths = f": {_width_text(stroke)} mm{count}"
     names = _shorten_middle(names, MAX_ENTRY_LETTERS - len(f"{number}  {widths}"))
     names += "" if names.isascii() else LEFT_TO_RIGHT_MARK  # the width stays behind a Hebrew or Arabic name
     words = f"{number}  {names}{widths}{layer}"
@@ -203,12 +189,12 @@ def _shorten_middle(name: str, room: int) -> str:
     return name if len(name) <= room else f"{name[: kept // 2]}...{name[-(kept - kept // 2) :]}"
 
 
-def _letters_per_line(canvas: _Canvas) -> int:
+def _letters_per_line(canvas: Canvas) -> int:
     """Return how many letters fit on a line of the lists."""
     return int((canvas.width - 2 * MARGIN_PX) / LETTER_WIDTH_PX)
 
 
-def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
+def _list_notices(canvas: Canvas, notices: list[Notice], y: float) -> float:
     listed = [
         (colour, notice)
         for is_damage, colour in ((True, WARNING_TEXT), (False, TEXT))
@@ -225,62 +211,65 @@ def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
     return y
 
 
-def _write_svg(canvas: _Canvas) -> str:
-    w, h = f"{canvas.width:.0f}", f"{canvas.height:.0f}"
-    size = f'width="{w}" height="{h}" viewBox="0 0 {w} {h}"'
-    lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
-        f'<rect width="100%" height="100%" fill="{IMPORT_BACKGROUND}"/>',
-    ]
-    for kind, *item in canvas.items:
-        if kind == "area":
-            rings, colour, opacity = item
-            data = "".join(_path_data(ring) + "Z" for ring in rings)
-            lines.append(f'<path d="{data}" fill="{colour}" fill-opacity="{opacity:g}"/>')
-        elif kind == "line":
-            points, colour, width = item
-            lines.append(f'<path d="{_path_data(points)}" fill="none" stroke="{colour}" stroke-width="{width:g}"/>')
-        else:
-            (x, y), words, colour, size = item
-            style = f'font-family="sans-serif" font-size="{size}" fill="{colour}" xml:space="preserve"'
-            lines.append(f'<text x="{x:.1f}" y="{y:.1f}" {style}>{escape(words)}</text>')
-    return "\n".join([*lines, "</svg>", ""])
+def _group_runs(strokes: list) -> list[_Run]:
+    """Group consecutive similar strokes into entries of the list.
+
+    The strokes have the same width and layer. The strokes of a group are sub-paths of one element, or elements with
+    consecutive numbers. Fewer than MIN_STROKES_IN_RUN strokes stay separate entries.
+    """
+    runs: list[_Run] = []
+    keys = []
+    for stroke in strokes:
+        keys.append((*_series_key(stroke.origin), _width_text(stroke), stroke.layer))
+    first = 0
+    for k, key in enumerate(keys):
+        kind, number, *alike = key
+        follows = k + 1 < len(keys) and keys[k + 1] == (kind, number + 1, *alike) and number >= 0
+        if not follows:
+            if k - first + 1 < MIN_STROKES_IN_RUN:
+                runs += [_Run(single, single) for single in range(first, k + 1)]
+            else:
+                runs.append(_Run(first, k, strokes[k].origin.part > 0))
+            first = k + 1
+    return runs
 
 
-def _path_data(points: np.ndarray) -> str:
-    flat = (np.round(points, 2) + 0.0).ravel().tolist()
-    return ("M" + "L".join(["%.2f,%.2f"] * len(points))) % tuple(flat)
+def _series_key(origin) -> tuple[tuple, int]:
+    """Return the key that the strokes of one entry share.
+
+    Returns also the running number of the stroke, -1 for none.
+    """
+    others = (origin.repeat, origin.lane)
+    if origin.part:
+        return (origin.element, True, *others), origin.part
+    stem, number = re.fullmatch("(.*?)([0-9]*)", origin.element, re.DOTALL).groups()
+    return (stem, False, *others), int(number[-18:] or -1)
 
 
-def _write_png(canvas: _Canvas) -> bytes:
-    import cv2  # takes a tenth of a second, and an SVG does not need it
-
-    from .png_canvas import SUB_PIXEL_BITS, bgr, blank_canvas, encode_png, write_text
-
-    image = blank_canvas((round(canvas.height), round(canvas.width)), IMPORT_BACKGROUND)
-    for kind, *item in canvas.items:
-        if kind == "area":
-            _fill_area(image, *item)
-        elif kind == "line":
-            points, colour, width = item
-            fixed = np.round((points - 0.5) * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
-            cv2.polylines(image, [fixed], False, bgr(colour), max(1, round(width)), cv2.LINE_AA, SUB_PIXEL_BITS)
-        else:
-            (x, y), words, colour, size = item
-            write_text(image, words, (round(x), round(y)), size, 400, colour)
-    return encode_png(image)
+def _width_text(stroke) -> str:
+    """Return the width of a stroke [mm] in words, or its smallest and largest width."""
+    widths = sorted(2 * knot[1] for knot in stroke.half_width)
+    return f"{widths[0]:.3g}" + (f" to {widths[-1]:.3g}" if widths[-1] > widths[0] else "")
 
 
-def _fill_area(image: np.ndarray, rings, colour: str, opacity: float) -> None:
-    import cv2
+def _start_direction(line: np.ndarray) -> np.ndarray:
+    """Return the direction in which a line starts, as a unit vector."""
+    distances = np.hypot(*(line - line[0]).T)
+    ahead = line[int(np.argmax(distances >= 6.0))] if (distances >= 6.0).any() else line[-1]
+    length = math.dist(ahead, line[0])
+    return (ahead - line[0]) / length if length > 0 else np.array([1.0, 0.0])
 
-    from .png_canvas import SUB_PIXEL_BITS, blend
 
-    points = np.vstack(rings)
-    height, width = image.shape[:2]
-    x0, y0 = np.clip(np.floor(points.min(axis=0)), 0, (width - 1, height - 1)).astype(int)
-    x1, y1 = np.clip(np.ceil(points.max(axis=0)) + 1, (x0 + 1, y0 + 1), (width, height)).astype(int)
-    mask = np.zeros((y1 - y0, x1 - x0), np.uint8)
-    fixed = [np.round((ring - (x0 + 0.5, y0 + 0.5)) * 2**SUB_PIXEL_BITS).astype(np.int32) for ring in rings]
-    cv2.fillPoly(mask, fixed, 255, cv2.LINE_AA, SUB_PIXEL_BITS)
-    blend(image[y0:y1, x0:x1], mask / 255.0 * opacity, colour)
+def _mark_cells(lines: list[np.ndarray], size: tuple[float, float]) -> np.ndarray:
+    """Return the mask (rows, columns) of the cells that lines go through.
+
+    Cells have sides of LABEL_CELL_PX. size: width and height of the picture [px].
+    """
+    cells = np.zeros((math.ceil(size[1] / LABEL_CELL_PX), math.ceil(size[0] / LABEL_CELL_PX)), bool)
+    for line in lines:
+        at = polylines.lengths(line)
+        dense = np.linspace(0.0, at[-1], math.ceil(2 * at[-1] / LABEL_CELL_PX) + 1)
+        points = np.column_stack([np.interp(dense, at, line[:, k]) for k in (0, 1)])
+        x, y = (points // LABEL_CELL_PX).astype(int).clip(0, (cells.shape[1] - 1, cells.shape[0] - 1)).T
+        cells[y, x] = True
+    return cells
