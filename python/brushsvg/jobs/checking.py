@@ -408,11 +408,9 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
                 is_compared=work is not None,
                 border_mm=tuple(header.border_mm),
             )
-        if header.first_mm:
-            outcome = setup_checks.check_first_run(text, read, header, brush, cell)
-            return Check("first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.first_mm))
-        outcome = setup_checks.check_heights(text, read, header, brush, cell)
-        return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.heights_mm))
+        outcome = setup_checks.check_strokes(text, read, header, brush, cell)
+        kind, heights_mm = ("first-run", header.first_mm) if header.first_mm else ("height", header.heights_mm)
+        return Check(kind, tuple(outcome.problems), outcome.time_s, heights_mm=tuple(heights_mm))
 
 
 def _compare_border(header, work: PreparedDrawing, stage) -> list[Notice]:

@@ -47,29 +47,22 @@ def check_border(
     return _check_setup_program(text, read, expected, sections, cell, cell.heights.safe_mm, "safe height")
 
 
-def check_heights(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
-    """Check a program that finds the paper by strokes at several heights.
+def check_strokes(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+    """Check a first run, or a program that finds the paper by strokes at several heights.
 
-    Its header names the heights. Each of these strokes may be the first on the paper. Raises Error when the strokes do
-    not fit on the sheet or go deeper than the brush or the cell allows.
+    Its header names the heights. Each of these strokes may be the first on the paper. Raises Error when the program
+    leaves the workspace, does not fit on the sheet, or goes deeper than the brush or the cell allows.
     """
-    sheet_mm = origin.sheet_mm
-    highest_mm, lowest_mm, step_mm = origin.heights_mm
-    expected = make_height_program(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    expected = replace(expected, header=height_header(brush.name, sheet_mm, origin.heights_mm, expected))
+    sheet_mm, heights_mm = origin.sheet_mm, origin.first_mm or origin.heights_mm
+    highest_mm, lowest_mm, _ = heights_mm
+    make_program, make_header, limit_name = make_height_program, height_header, "height of the lowest stroke"
+    if origin.first_mm:
+        make_program, make_header, limit_name = make_first_run_program, first_header, "height of the deepest stroke"
+        lowest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)
+    expected = make_program(brush, cell, sheet_mm, *heights_mm)
+    expected = replace(expected, header=make_header(brush.name, sheet_mm, heights_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
-    return _check_setup_program(text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke")
-
-
-def check_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
-    """Check all steps of a first run. Raises Error when it leaves the workspace or does not fit on the sheet."""
-    sheet_mm = origin.sheet_mm
-    highest_mm, lowest_mm, step_mm = origin.first_mm
-    expected = make_first_run_program(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    expected = replace(expected, header=first_header(brush.name, sheet_mm, origin.first_mm, expected))
-    sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
-    deepest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)
-    return _check_setup_program(text, read, expected, sections, cell, deepest_mm, "height of the deepest stroke")
+    return _check_setup_program(text, read, expected, sections, cell, lowest_mm, limit_name)
 
 
 def _check_setup_program(
