@@ -31,7 +31,7 @@ def join_lines(strokes: list) -> tuple[list, list[Notice]]:
     lines = {k: stroke for k, stroke in enumerate(strokes) if _is_open_line(stroke)}
     near: dict[tuple, list[int]] = {}
     for k, stroke in lines.items():
-        for place in {_grid_cell(stroke.middle_mm[0, :2]), _grid_cell(stroke.middle_mm[-1, 6:])}:
+        for place in {grid_cell(stroke.middle_mm[0, :2]), grid_cell(stroke.middle_mm[-1, 6:])}:
             near.setdefault(place, []).append(k)
     used: set[int] = set()
     joined_strokes, notices = [], []
@@ -118,7 +118,7 @@ def _find_continuation(chain: _Chain, at_end: bool, near: dict, lines: dict, use
     """Return the line that continues an end of the chain with the least turn."""
     place, out, half = chain.end(at_end)
     turns = []
-    x, y = _grid_cell(place)
+    x, y = grid_cell(place)
     candidates = {k for dx in (-1, 0, 1) for dy in (-1, 0, 1) for k in near.get((x + dx, y + dy), ())}
     for k in sorted(candidates - used):
         other = lines[k]
@@ -163,5 +163,6 @@ def _end_direction(cubic: np.ndarray) -> np.ndarray:
     return moves[2 - (np.hypot(*moves.T) > 1e-9)[::-1].argmax()]
 
 
-def _grid_cell(place: np.ndarray) -> tuple[int, int]:
+def grid_cell(place: np.ndarray) -> tuple[int, int]:
+    """Return the cell of a grid whose side is the largest gap between ends that meet."""
     return tuple(np.floor(place / MAX_GAP_MM).astype(int).tolist())

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..geometry.rings import is_within
 from ..read.design import Element, SubPath
-from .joining import MAX_GAP_MM
+from .joining import MAX_GAP_MM, grid_cell
 from .skeleton.fill_rule import FLATTENED_MM, flattened
 
 
@@ -41,12 +41,12 @@ def _join_ends(kept: list[Element | None], group: list[int]) -> None:
     near: dict[tuple, list[tuple[int, bool]]] = defaultdict(list)
     for k, cubics in lines.items():
         for at_end in (False, True):
-            near[_grid_cell(_end(cubics, at_end))].append((k, at_end))
+            near[grid_cell(_end(cubics, at_end))].append((k, at_end))
     ends = {k: [_end(cubics, at_end) for at_end in (False, True)] for k, cubics in lines.items()}
 
     def following(k: int, at_end: bool) -> tuple[int, bool] | None:
         place = ends[k][at_end]
-        x, y = _grid_cell(place)
+        x, y = grid_cell(place)
         around = [each for dx in (-1, 0, 1) for dy in (-1, 0, 1) for each in near.get((x + dx, y + dy), ())]
         met = [(n, end) for n, end in around if (n, end) != (k, at_end) and _meet(ends[n][end], place)]
         return met[0] if len(met) == 1 else None
@@ -102,7 +102,3 @@ def _end(cubics: np.ndarray, at_end: bool) -> np.ndarray:
 
 def _meet(a: np.ndarray, b: np.ndarray) -> bool:
     return bool(np.hypot(*(a - b)) <= MAX_GAP_MM)
-
-
-def _grid_cell(place: np.ndarray) -> tuple[int, int]:
-    return tuple(np.floor(place / MAX_GAP_MM).astype(int).tolist())
