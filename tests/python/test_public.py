@@ -155,6 +155,15 @@ def test_a_refusal_of_write_program_has_its_advice(tmp_path):
     assert caught.value.advice and "--" not in caught.value.advice
 
 
+def test_write_program_refuses_a_brush_with_outlines_in_another_unit(tmp_path):
+    brush = brushsvg.find_brush("round-6")
+    dragged = [brushsvg.Footprint(each.depth_mm, each.outline_mm / 1000) for each in brush.footprints.dragged]
+    brush.footprints = brushsvg.FootprintTable(dragged)
+    with refused("footprint-against-law"):
+        brushsvg.write_program(tmp_path / "a.ngc", plan_of(SOUND), brush)
+    assert not list(tmp_path.iterdir())
+
+
 def test_write_program_reports_a_plan_of_another_brush(tmp_path):
     brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
     assert brushsvg.write_program(tmp_path / "a.ngc", plan, brush) == []

@@ -263,13 +263,15 @@ def write_program(
     with the given brush, and its header counts these notices. The other notices are those of `convert` on the paint,
     the pens, the name of the program and the cell.
 
-    Raises Error, and writes nothing, if paint leaves the sheet or a limit of the brush or the cell is broken.
+    Raises Error, and writes nothing, for a brush that is not valid, and if paint leaves the sheet or a limit of the
+    brush or the cell is broken.
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
     require_type(plan, _core.Plan, "a plan")
     require_type(brush, _core.Brush, "a brush")
     require_type(title, str, "a title")
+    _core.check(brush)
     # a cell that was made in Python must be valid as a file: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     suffix = Path(path).suffix.lower()
