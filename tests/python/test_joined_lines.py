@@ -101,6 +101,7 @@ def test_lines_are_joined_only_on_request_and_check_accepts_it(tmp_path, capsys)
         (["M10 10H40", "M40 10V40", "M10 40H40", "M10 40V10"], True),
         (["M10 10V40", "M10 40H30"], False),  # an L
         (["M10 40L20 10", "M20 10L30 40", "M14 30h12"], False),  # an A
+        (["M10 10H40"] * 5, False),
         (["M10 10V40", "M40 10H60V30H40z", "M60 60H80V30H60z"], False),
     ],
 )
