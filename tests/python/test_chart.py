@@ -20,7 +20,7 @@ from sampling import sample
 from brushsvg import _core, brush_like, find_brush, save_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_pdf, chart_svg
+from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_page, chart_pdf, chart_svg
 from brushsvg.calibration.marks.from_marks import laws_of
 from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.cli import main
@@ -550,3 +550,13 @@ def test_the_chart_is_the_same_each_time():
     texts = [write_chart(made) for made in (small_chart(), chart(find_brush("round-6"), A5))]
     assert len(set(texts)) == 1
     assert all(a != b for a, b in itertools.pairwise(read_chart(texts[0].encode()).strokes))
+
+
+def test_a_page_has_the_requested_rings_and_refuses_anything_else():
+    page = chart(find_brush("round-6"), (210, 297))
+    ring = np.array([(5.0, 5.0), (9.0, 5.0), (9.0, 9.0)])
+    assert len(chart_page(page, ".svg", [ring])) > len(chart_page(page, ".svg"))
+    for rings, code in ((3, "wrong-type"), (ring, "wrong-type"), ([ring * np.nan], "out-of-range")):
+        with pytest.raises(Error) as reported:
+            chart_page(page, ".svg", rings)
+        assert reported.value.code == code

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from diagnostics import refused
 
+import brushsvg
 from brushsvg import _core, find_brush
 
 
@@ -131,3 +132,12 @@ def test_the_origin_of_a_stroke_is_kept_in_fields():
     )  # the name is not split into its parts
     stroke.id = "other/2"
     assert (stroke.id, stroke.origin.element, stroke.origin.part) == ("other/2", "other/2", 0)
+
+
+def test_a_plan_may_be_given_as_bytes():
+    plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("a", np.array([(1, 1, 0), (2, 1, -1.0)]), 20)])
+    text = brushsvg.write_plan(plan)
+    assert brushsvg.write_plan(brushsvg.read_plan(text.encode())) == text
+    with pytest.raises(brushsvg.Error) as reported:
+        brushsvg.read_plan(b"\xff\xfe")
+    assert reported.value.code == "not-json"

@@ -101,12 +101,18 @@ def test_svg_contains_the_same_paint_with_y_inverted(painted):
         assert area(back) == pytest.approx(area(trace.outline_mm), rel=1e-3)
 
 
-def test_an_invalid_colour_is_drawn_black(painted):
+@pytest.mark.parametrize(
+    ("colours", "drawn"),
+    [
+        (["", "none", '"/><script/>'], ["#000000"] * 3),
+        (["red", "#00f", "rgb(0, 128, 0)"], ["#ff0000", "#0000ff", "#008000"]),
+    ],
+)
+def test_colours_are_those_of_css_and_an_invalid_one_is_drawn_black(painted, colours, drawn):
     marks, brush, _ = painted
-    colours = ["", "red", '"/><script/>']
-    assert pixel(decode(marks_png(marks, brush, SHEET, colours)), 16, 6) == "#000000"
+    assert pixel(decode(marks_png(marks, brush, SHEET, colours)), 16, 6) == drawn[0]
     paths = ET.fromstring(marks_svg(marks, SHEET, colours)).findall(f"{SVG}path")
-    assert [path.get("fill") for path in paths] == ["#000000"] * 3
+    assert [path.get("fill") for path in paths] == drawn
 
 
 def test_the_toolpath_is_drawn_over_the_paint(painted):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Iterable, Sequence
 from html import escape
 from itertools import pairwise
@@ -13,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import Error, need_numbers, require_type
+from ..read.svg.colour import parse_colour
 from .picture_colours import INTERVAL_BAND, MISSING, TEXT, TOOLPATH
 from .svg_text import path_data, printable, quoted
 
@@ -45,10 +45,10 @@ def marks_svg(
 ) -> str:
     """Draw one path per pass in its colour, in millimetres of the sheet.
 
-    marks: with outlines; tracking_errors: one per pass, if known; made: how the marks were made, in words; band: the
-    95 % band of their edges, drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; astray:
-    names of strokes that are marked because their paint is displaced; toolpath_mm: the tool's positions (n, 2) or
-    (n, 3) in each pass, drawn over the paint, dashed where the tool travels in the air.
+    marks: with outlines; colours: one per pass, as in CSS; tracking_errors: one per pass, if known; made: how the marks
+    were made, in words; band: the 95 % band of their edges, drawn with a legend; blank: rings of the unpainted parts of
+    shapes, outlined; astray: names of strokes that are marked because their paint is displaced; toolpath_mm: the tool's
+    positions (n, 2) or (n, 3) in each pass, drawn over the paint, dashed where the tool travels in the air.
 
     Raises Error for marks without outlines, and for arguments that cannot be drawn.
     """
@@ -184,5 +184,6 @@ def _error_attributes(error, is_astray: bool) -> str:
 
 
 def known_colour(colour: str) -> str:
-    """Return the colour, or black where it is not #rrggbb. Plans from other programs may have other colours."""
-    return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"
+    """Return a colour of CSS as #rrggbb, black where it is none. Plans from other programs may have any words."""
+    parsed = parse_colour(colour.strip()) or ""
+    return parsed[:7] if parsed.startswith("#") else "#000000"

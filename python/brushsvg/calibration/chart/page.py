@@ -13,7 +13,8 @@ import cv2
 import numpy as np
 
 from ... import _core
-from ...errors import missing_packages_error, need_one_of, require_type
+from ...errors import Error, missing_packages_error, need_one_of, require_type
+from ...model.laws.numbers import numbers
 from ...model.plot import allow_missing_letters, new_figure
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
@@ -31,10 +32,14 @@ def chart_page(chart: Chart, extension: str, rings: Iterable[np.ndarray] = ()) -
     chart: as `chart` returns it.
     rings: additional black rings, arrays (n, 2) [mm].
 
-    Raises Error for another extension, and for ".pdf" if matplotlib is missing.
+    Raises Error for another extension, for rings that are not such arrays, and for ".pdf" if matplotlib is missing.
     """
     require_type(chart, Chart, "a chart")
     need_one_of(extension, PAGE_EXTENSIONS, "the extension of a page")
+    require_type(rings, Iterable, "a list of rings")
+    rings = [numbers(ring, "a ring [mm]", -1e6, 1e6) for ring in rings]
+    if not all(ring.ndim == 2 and ring.shape[1] == 2 for ring in rings):
+        raise Error("each ring must be an array of points (n, 2) [mm]", "rings", code="wrong-type")
     return chart_pdf(chart, rings) if extension == ".pdf" else chart_svg(chart, rings).encode()
 
 
