@@ -137,6 +137,14 @@ def test_a_missing_or_foreign_part_is_refused(job, capsys):
         assert refused_with("line-unread")
 
 
+def test_files_without_the_end_of_their_last_line_are_sound(job, capsys):
+    _, first, _ = job
+    for path in files_of(first):
+        path.write_bytes(path.read_bytes().rstrip(b"\r\n"))
+    status, _, reported = call(capsys, "check", str(first), str(first.parents[1] / "waves.json"))
+    assert status == 0, reported
+
+
 def test_a_stroke_with_too_many_lines_is_one_program_with_a_warning(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 1200)))
     words = "convert", tmp_path / "a.json", "-o", tmp_path / "a.script", "--cell", "ur5e"

@@ -213,7 +213,10 @@ def _read_with_called_files(path: str, suffix: str, text: str) -> str:
         sentence = "this is one part of a job in several files"
         raise Error(sentence, code="program-cut-short", advice=f"check {first}, which reads all of them")
     called = called_programs(path, text, lambda file: text_of_file(read_bytes(file)))
-    return "".join([text, *called.values()])
+    for called_text in called.values():
+        text += "" if text.endswith("\n") else "\n"  # an editor can leave out the end of the last line
+        text += called_text
+    return text
 
 
 def _drop_project_choices(chosen: Choices, header) -> Choices:
