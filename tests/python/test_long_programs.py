@@ -137,6 +137,20 @@ def test_a_missing_or_foreign_part_is_refused(job, capsys):
         assert refused_with("line-unread")
 
 
+def test_a_problem_in_a_later_file_names_that_file_and_its_line(job, capsys):
+    name, first, _ = job
+    later = files_of(first)[2]
+    lines = later.read_text().splitlines(keepends=True)
+    moved = next(row for row, line in enumerate(lines) if "-0.00" in line or "Z -" in line)
+    begun = "".join(lines[: moved + 1])
+    faster = begun.replace("v=0.02000", "v=0.09000").replace("= 0.020000", "= 0.090000")
+    for changed in ("".join([*lines[:moved], "hello\n"]), faster):
+        assert changed != begun
+        later.write_text("".join([changed, *lines[moved + 1 :]]))
+        status, printed, reported = call(capsys, "check", str(first), str(first.parents[1] / "waves.json"))
+        assert status == 1 and f"line {moved + 1} of {later.name}" in f"{printed}{reported}", (name, reported)
+
+
 def test_files_without_the_end_of_their_last_line_are_sound(job, capsys):
     _, first, _ = job
     for path in files_of(first):

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
 from ..comparison.corrections import is_corrected
-from ..errors import Error, Notice, name_file_in_errors, require_type
+from ..errors import Error, Notice, join_advice, name_file_in_errors, require_type
 from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
@@ -152,8 +153,8 @@ def check_program(
         text = text_of_file(b"" if suffix == ".cdr" else data)
         if suffix in GCODE and not is_ours(text):
             return _check_foreign_program(path, text, chosen, warn)
-        text = _read_with_called_files(path, suffix, text)
-        header = read_header(text)
+        files = _read_with_called_files(path, suffix, text)
+        header = read_header(files.text)
         chosen = _drop_project_choices(chosen, header)
         for kind, name, names in (
             ("cell", header.cell, cell_names()),
@@ -165,28 +166,61 @@ def check_program(
         tolerance_mm = header.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
         cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
         brush = load_brush(chosen.brush) or find_brush(header.brush)
-        read = read_program(text, suffix, cell)
+        with files.located_errors():
+            read = read_program(files.text, suffix, cell)
     if chosen.input is None:
         warn(path, report_flags_without_effect(chosen, DRAWING_FLAGS, "a program that is checked without its drawing"))
-    warn(path, report_renamed(Path(path).stem, suffix, cell, POSTS[cell.language].name_in(text)))
+    warn(path, report_renamed(Path(path).stem, suffix, cell, POSTS[cell.language].name_in(files.text)))
     warn(cell.name, list_arm_notices(cell))
-    program = _OwnProgram(path, text, header, read, cell, brush)
+    program = _OwnProgram(path, files, header, read, cell, brush)
     if header.border_mm or header.heights_mm or header.first_mm:
         return _check_setup_program(program, chosen, stage, warn)
     return _check_painting(program, chosen, stage, warn)
 
 
 @dataclass(frozen=True)
+class _ProgramFiles:
+    """The files of a program as one text.
+
+    text: the lines of all files.
+    first_lines: the line of the text, from 1, at which each called file begins, by the name of that file.
+    """
+
+    text: str
+    first_lines: dict[str, int]
+
+    def locate(self, sentence: str) -> str:
+        """Return a sentence that begins with a line of the text, with the file of that line and its number there."""
+        found = re.match(r"line (\d+)", sentence)
+        begun = [(first, name) for name, first in self.first_lines.items() if found and first <= int(found[1])]
+        if not begun:
+            return sentence
+        first, name = max(begun)
+        return f"line {int(found[1]) - first + 1} of {name}{sentence[found.end() :]}"
+
+    @contextmanager
+    def located_errors(self) -> Iterator[None]:
+        """Let errors inside name the file of their line."""
+        try:
+            yield
+        except Error as problem:
+            problem.sentence = self.locate(problem.sentence)
+            problem.args = (join_advice(problem.sentence, problem.advice),)
+            raise
+
+
+@dataclass(frozen=True)
 class _OwnProgram:
     """A program that brushsvg wrote.
 
+    files: its text.
     header: the contents of its header.
     read: its moves.
     cell, brush: the cell and brush that it is for.
     """
 
     path: str
-    text: str
+    files: _ProgramFiles
     header: object
     read: object
     cell: Cell
@@ -196,8 +230,8 @@ class _OwnProgram:
         return self.header.z_offset_mm if chosen.z_offset is None else chosen.z_offset
 
 
-def _read_with_called_files(path: str, suffix: str, text: str) -> str:
-    """Return the text of a program and of the files that it calls, next to it."""
+def _read_with_called_files(path: str, suffix: str, text: str) -> _ProgramFiles:
+    """Return a program with the files that it calls, next to it."""
     if suffix == ".robodk":
         sentence = "brushsvg cannot read back what a RoboDK post writes"
         raise Error(sentence, code="program-format")
@@ -213,10 +247,12 @@ def _read_with_called_files(path: str, suffix: str, text: str) -> str:
         sentence = "this is one part of a job in several files"
         raise Error(sentence, code="program-cut-short", advice=f"check {first}, which reads all of them")
     called = called_programs(path, text, lambda file: text_of_file(read_bytes(file)))
-    for called_text in called.values():
+    first_lines = {}
+    for file, called_text in called.items():
         text += "" if text.endswith("\n") else "\n"  # an editor can leave out the end of the last line
+        first_lines[Path(file).name] = text.count("\n") + 1
         text += called_text
-    return text
+    return _ProgramFiles(text, first_lines)
 
 
 def _drop_project_choices(chosen: Choices, header) -> Choices:
@@ -243,7 +279,8 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         if sheet_mm is None:
             sentence = "its header does not say how large the sheet is: give --sheet or the drawing"
             raise Error(sentence, code="sheet-unknown")
-        simulated = simulate_program.simulate_program(read, brush, cell, sheet_mm, z_offset_mm)
+        with program.files.located_errors():
+            simulated = simulate_program.simulate_program(read, brush, cell, sheet_mm, z_offset_mm)
     warn(program.path, _report_offset(z_offset_mm))
     with name_file_in_errors(program.path):
         problems = simulated.problems + simulate_program.check_stroke_numbers(read, header.first_stroke, header.strokes)
@@ -265,6 +302,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         problems = problems + rewrite_notices
         if rewritten and not problems:
             problems = find_moves_out_of_arm(rewritten, sheet_mm)
+        problems = [replace(each, sentence=program.files.locate(each.sentence)) for each in problems]
         title = (work and work.title) or header.title  # a program has ASCII letters only
         painted_work = PreparedDrawing(title, brush, simulated.plan, strokes, (), Options(), ())
         seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
@@ -345,7 +383,9 @@ def _compare_with_rewritten(
             simulated, brush, cell, z_offset_mm, header.first_stroke, None, fastest
         )
         least_s = duration_s(fastest_program)
-    changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s, most_s)
+    changed_line = against_regenerated.differing_line(
+        program.files.text, program.read, rewritten, cell, least_s, most_s
+    )
     notices = (
         [Notice("", changed_line, code="program-changed")]
         if changed_line
@@ -387,7 +427,7 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
 
 def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
     """Check a program that runs before the first stroke; its header says all that it does."""
-    header, read, text = program.header, program.read, program.text
+    header, read, text = program.header, program.read, program.files.text
     cell, brush = program.cell, program.brush
     with name_file_in_errors(program.path):
         if (header.heights_mm or header.first_mm) and chosen.input is not None:
