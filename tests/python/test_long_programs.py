@@ -159,6 +159,14 @@ def test_files_without_the_end_of_their_last_line_are_sound(job, capsys):
     assert status == 0, reported
 
 
+def test_a_called_file_checked_alone_names_the_program_that_calls_it(job, capsys):
+    name, first, _ = job
+    if name == "kr6-r900":
+        for called in files_of(first)[1:]:
+            status, _, reported = call(capsys, "check", str(called))
+            assert status == 1 and f"check {first.name}, which reads all of them" in str(reported)
+
+
 def test_a_stroke_with_too_many_lines_is_one_program_with_a_warning(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 1200)))
     words = "convert", tmp_path / "a.json", "-o", tmp_path / "a.script", "--cell", "ur5e"

@@ -26,7 +26,7 @@ from ..machine.job_program import find_moves_out_of_arm
 from ..machine.limits.paint_on_sheet import job_bounds_mm
 from ..machine.moves import duration_s
 from ..machine.paint_reload import split_into_loads
-from ..machine.posts import GCODE, POSTS
+from ..machine.posts import GCODE, POSTS, Post
 from ..machine.setup_programs import round_outwards
 from ..machine.writer import called_programs, list_arm_notices, parted_post, report_renamed
 from ..model.library import brush_names, find_brush
@@ -241,9 +241,7 @@ def _read_with_called_files(path: str, suffix: str, text: str) -> _ProgramFiles:
     if suffix == ".traj":
         text = as_table(text)
     post = parted_post(suffix)
-    part = re.fullmatch(r"(.+)-part\d+", Path(path).stem)
-    if post and part and any(name.startswith("-part") for name in post.called(text)):
-        first = Path(path).with_name(part[1] + suffix).name
+    if post and (first := _find_first_file(Path(path), post, text)):
         sentence = "this is one part of a job in several files"
         raise Error(sentence, code="program-cut-short", advice=f"check {first}, which reads all of them")
     called = called_programs(path, text, lambda file: text_of_file(read_bytes(file)))
@@ -253,6 +251,18 @@ def _read_with_called_files(path: str, suffix: str, text: str) -> _ProgramFiles:
         first_lines[Path(file).name] = text.count("\n") + 1
         text += called_text
     return _ProgramFiles(text, first_lines)
+
+
+def _find_first_file(path: Path, post: Post, text: str) -> str:
+    """Return the name of the first file of a job of which this file is a later one, or ""."""
+    part = re.fullmatch(r"(.+)-part\d+", path.stem)
+    if part and any(name.startswith("-part") for name in post.called(text)):
+        return path.with_name(part[1] + path.suffix).name
+    if not re.fullmatch(r"B[0-9A-Z]{4}\d{3,}", path.stem, re.IGNORECASE):  # as name_parts names called programs
+        return ""
+    others = [other for other in sorted(path.parent.glob(f"*{path.suffix}")) if other != path and other.is_file()]
+    calling = (other.name for other in others if path.stem.upper() in post.called(text_of_file(read_bytes(other))))
+    return next(calling, "")
 
 
 def _drop_project_choices(chosen: Choices, header) -> Choices:
