@@ -316,6 +316,14 @@ def test_a_wipe_beyond_the_sheet_does_not_cross_the_sheet():
     assert are_reported(found, "station-on-sheet ink '600 x 200 mm'")
 
 
+def test_the_advice_for_a_station_beyond_the_margin_names_the_station():
+    cell = find_cell()
+    ink = Station("ink", (-cell.workspace.margin_mm - 20.0, 40.0), depth_mm=5.0)
+    found = forbidden(plan_of(ROUND), BRUSH, replace(cell, stations=(ink,), reload=Reload("stroke")))
+    beyond = [each for each in found if each.code == "tool-off-sheet"]
+    assert beyond and all(each.where == "ink" and "the station away" in each.advice for each in beyond), found
+
+
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])
 def test_path_checks_do_not_depend_on_grouping(monkeypatch, at_once):
     """The result does not depend on how many moves are checked at once.

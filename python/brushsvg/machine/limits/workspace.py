@@ -188,7 +188,8 @@ def _check_sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_
                 f"the TCP goes {beyond - margin:.2f} mm beyond the {side} edge of the workspace, "
                 f"which is the sheet and {margin:.1f} mm around it"
             )
-            advice = "move the drawing away from this edge, or raise workspace.margin_mm of the cell if there is room"
+            moved = "the drawing or the station" if cell.stations else "the drawing"
+            advice = f"move {moved} away from this edge, or raise workspace.margin_mm of the cell if there is room"
             yield Notice("", sentence, code="tool-off-sheet", about=side, advice=advice, excess=beyond - margin)
 
 
