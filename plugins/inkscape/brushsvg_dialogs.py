@@ -18,6 +18,7 @@ IN_DIALOGS = {  # code of a notice: advice for Inkscape, in place of the advice 
     "brush-unknown": "choose another one in Brush settings, or a brush file in this dialog",
     "cell-unknown": "choose another one in Brush settings",
     "program-format": "choose it in Brush settings",
+    "lines-meet": "combine them with Path > Combine, then join their end nodes with the node tool",
     "depth-not-measured": "Object > Fill and Stroke gives all strokes one width",
     "width-out-of-reach": "passes in Brush settings fills it",
     "paper-example": "brushsvg cell new --taught, in a terminal, writes a cell to choose in Brush settings",

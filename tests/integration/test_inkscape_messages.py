@@ -61,6 +61,11 @@ ADVICE = {  # by the code of the notice: the script and the drawing that cause i
         "check",
         f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'.replace("<svg ", '<svg data-brushsvg-wide="clamp" '),
     ),
+    "lines-meet": (
+        "check",
+        f'{OPEN}<g fill="none" stroke="#000" stroke-width="3"><path d="M20 20H60"/><path d="M60 20V40"/>'
+        '<path d="M60 40H20"/></g></svg>',
+    ),
     "paper-example": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
     "sheet-too-small": ("chart", SOUND, "--strokes=many", "--sheet=letter"),
     "program-format": ("save", document('data-brushsvg-cell="linuxcnc-3axis"'), "--format=script"),
