@@ -163,8 +163,8 @@ def test_a_called_file_checked_alone_names_the_program_that_calls_it(job, capsys
     name, first, _ = job
     if name == "kr6-r900":
         for called in files_of(first)[1:]:
-            status, _, reported = call(capsys, "check", str(called))
-            assert status == 1 and f"check {first.name}, which reads all of them" in str(reported)
+            status, _, reported = in_json(capsys, "check", called)
+            assert status == 1 and is_reported(reported, f"program-cut-short {first.name}"), reported
 
 
 def test_a_stroke_with_too_many_lines_is_one_program_with_a_warning(tmp_path, capsys):
