@@ -189,6 +189,19 @@ def test_parts_of_an_earlier_job_are_reported(tmp_path, capsys, name, parts):
         )
 
 
+def test_parts_of_an_earlier_program_for_a_colour_are_reported(tmp_path, capsys):
+    output, of_colour = tmp_path / "a.src", tmp_path / "a_1_ff0000.src"
+    (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 700)))
+    words = "convert", tmp_path / "a.json", "-o", output, "--cell", "kr6-r900"
+    assert in_json(capsys, *words)[0] == 0
+    output.rename(of_colour)
+    (tmp_path / "a.json").write_text(_core.write_plan(waves(1, 100)))
+    left_over = sorted(path.name for path in tmp_path.glob("*.src"))
+    assert len(left_over) > 1
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and is_reported(reported, f"programs-of-before {' '.join(left_over)}"), reported
+
+
 @pytest.mark.parametrize(
     "words",
     [["setup", "height"], ["setup", "border", "small.json"], ["setup", "first-run", "ur5e"], ["chart"]],

@@ -20,7 +20,8 @@ def report_leftover_programs(output: str, files: Collection[str]) -> list[Notice
     path = Path(output)
     name = re.compile(rf"{re.escape(path.stem)}([-_]\d+[-_][0-9a-f]{{6}}|_c\d+)?(-part\d+)?{re.escape(path.suffix)}")
     existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
-    existing += [each for each in _list_called_before(output) if path.with_name(each).exists()]
+    for program in {path, *map(path.with_name, existing)}:
+        existing += [each for each in _list_called_before(str(program)) if path.with_name(each).exists()]
     written = set(map(Path, files))  # a path may be spelled ./out.ngc
     leftover = sorted({each for each in existing if path.with_name(each) not in written}, key=_make_sort_key)
     if not leftover:
@@ -29,12 +30,12 @@ def report_leftover_programs(output: str, files: Collection[str]) -> list[Notice
     return [Notice("", sentence, code="programs-of-before", advice="delete them")]
 
 
-def _list_called_before(output: str) -> list[str]:
-    """List the files that the program now at the output path calls.
+def _list_called_before(program: str) -> list[str]:
+    """List the files that the program now at a path calls.
 
     A program in several files calls its other files.
     """
-    return [Path(file).name for file in called_programs(output, _read_earlier_program(output), _read_earlier_program)]
+    return [Path(file).name for file in called_programs(program, _read_earlier_program(program), _read_earlier_program)]
 
 
 def _read_earlier_program(path: str) -> str:
