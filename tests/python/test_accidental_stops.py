@@ -162,3 +162,6 @@ def test_the_start_of_a_lift_within_a_part_of_the_servo_is_not_a_stop(desk):
     Path("a.json").write_text(brushsvg.write_plan(plan))
     brushsvg.convert("a.json", "a.ebb", cell="mine.toml")
     assert brushsvg.check("a.ebb", "a.json", cell="mine.toml").problems == ()
+    text = Path("a.ebb").read_text()
+    Path("a.ebb").write_text(text.replace("SM,33,29,1", "SM,53,29,1"))  # the first part of the lift, 20 ms longer
+    assert is_reported(brushsvg.check("a.ebb", "a.json", cell="mine.toml").problems, "stands-in-paint")

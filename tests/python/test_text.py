@@ -360,7 +360,8 @@ def test_text_is_centred_on_a_given_sheet_or_refused():
     assert agrees(reported, "text-does-not-fit '60 x 7.9 mm'")
 
 
-@pytest.mark.parametrize("text", ["T", "TT\nI", "TIT\nT\nT\nT"])
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("text", ["I", "T", "TT\nI", "TIT\nT\nT\nT"])
 @pytest.mark.parametrize("sheet_mm", [(4.9, 60), (60, 7.9), (3.3, 3.1), (1.01, 60)])
 def test_the_advised_size_fits_and_is_hardly_smaller_than_the_largest(text, sheet_mm):
     reported = refusal(text, svg_font(), size_mm=123, sheet_mm=sheet_mm)

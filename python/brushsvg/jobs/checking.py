@@ -23,6 +23,7 @@ from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
 from ..machine.dry_brush import report_dry_brush
 from ..machine.job_program import find_moves_out_of_arm
+from ..machine.leftover_programs import read_if_possible
 from ..machine.limits.paint_on_sheet import job_bounds_mm
 from ..machine.moves import duration_s
 from ..machine.paint_reload import split_into_loads
@@ -260,8 +261,8 @@ def _find_first_file(path: Path, post: Post, text: str) -> str:
         return path.with_name(part[1] + path.suffix).name
     if not re.fullmatch(r"B[0-9A-Z]{4}\d{3,}", path.stem, re.IGNORECASE):  # as name_parts names called programs
         return ""
-    others = [other for other in sorted(path.parent.glob(f"*{path.suffix}")) if other != path and other.is_file()]
-    calling = (other.name for other in others if path.stem.upper() in post.called(text_of_file(read_bytes(other))))
+    others = sorted(other for other in path.parent.glob(f"*{path.suffix}") if other != path)
+    calling = (other.name for other in others if path.stem.upper() in post.called(read_if_possible(str(other))))
     return next(calling, "")
 
 

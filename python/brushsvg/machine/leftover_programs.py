@@ -35,11 +35,11 @@ def _list_called_before(program: str) -> list[str]:
 
     A program in several files calls its other files.
     """
-    return [Path(file).name for file in called_programs(program, _read_earlier_program(program), _read_earlier_program)]
+    return [Path(file).name for file in called_programs(program, read_if_possible(program), read_if_possible)]
 
 
-def _read_earlier_program(path: str) -> str:
-    """Read a program of an earlier run as far as possible.
+def read_if_possible(path: str) -> str:
+    """Read a program next to another one as far as possible.
 
     Names in it are ASCII. Devices and pipes hold no program.
     """

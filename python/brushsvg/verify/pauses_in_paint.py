@@ -72,9 +72,14 @@ def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Pr
     most_mm = np.abs(before_mm) + np.abs(after_mm)
     turns = (before_mm * after_mm <= 0) & (most_mm > 0)
     ways_mm = np.hypot(ways_mm, np.where(turns, np.maximum(most_mm, servo.step_mm), most_mm))
-    most_s = ways_mm / program.touching_mm_s
+    speed_mm_s, acceleration_mm_s2 = program.touching_mm_s, program.cell.speeds.acceleration_mm_s2
+    most_s = ways_mm / speed_mm_s
+    braking_s = speed_mm_s / acceleration_mm_s2
+    is_short = ways_mm < speed_mm_s * braking_s / 2  # the speed is not reached from rest
+    from_rest_s = np.where(is_short, np.sqrt(2 * ways_mm / acceleration_mm_s2), most_s + braking_s / 2)
     for last in np.flatnonzero((before_mm <= 0) & (after_mm > 0))[-1:]:
-        most_s[max(last - 1, 0) : last + 2] += program.touching_mm_s / (2 * program.cell.speeds.acceleration_mm_s2)
+        near = slice(max(last - 1, 0), last + 2)
+        most_s[near] = from_rest_s[near]
     return most_s
 
 

@@ -59,8 +59,9 @@ def svg_document(
         sheet = np.array(sheet_mm)
         if (size > sheet + 1e-9).any():
             too_large = size > sheet
-            fitting_mm = size_mm * ((sheet - width_mm) / (size - width_mm))[too_large].min()
-            smaller = f"--size {_round_down(fitting_mm)}" if fitting_mm > 0 else "a smaller --width"
+            room_mm, ink_mm = (sheet - width_mm)[too_large], (size - width_mm)[too_large]
+            has_room = (room_mm > 0).all()
+            smaller = f"--size {_round_down(size_mm * (room_mm / ink_mm).min())}" if has_room else "a smaller --width"
             raise Error(
                 f"the text takes {size[0]:.2f} x {size[1]:.2f} mm, more than the sheet's "
                 f"{sheet[0]:g} x {sheet[1]:g} mm",
