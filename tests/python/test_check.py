@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnostics import in_json, is_reported, refused
+from programs import LANGUAGES
 
 import brushsvg
 
@@ -66,6 +67,20 @@ def test_a_program_for_a_brush_and_a_cell_with_long_names_is_accepted(desk, cell
     named = replace(brushsvg.find_cell(cell), name="c" * 190)
     brushsvg.convert("two.svg", "long.ngc", brush=brush, cell=named)
     assert brushsvg.check("long.ngc", "two.svg", brush=brush, cell=named).problems == ()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("name", ["x, 5 strokes", "a" * 60, 'ten% "of"; G0; -- (it) ', "日本 Käfig"])
+def test_a_program_of_another_cell_or_brush_is_refused_by_its_name(desk, language, name):
+    cell, brush = brushsvg.find_cell(language), brushsvg.find_brush("round-6")
+    named_cell, named_brush = replace(cell, name=name), brushsvg.find_brush("round-6")
+    named_brush.name = name
+    program = f"named{LANGUAGES[language]}"
+    brushsvg.convert("two.svg", program, brush=named_brush, cell=named_cell)
+    assert brushsvg.check(program, "two.svg", brush=named_brush, cell=named_cell).problems == ()
+    for other in ({"brush": named_brush, "cell": cell}, {"brush": brush, "cell": named_cell}):
+        with refused("program-for-other"):
+            brushsvg.check(program, **other)
 
 
 def test_flags_for_the_drawing_have_no_effect_without_one(desk, capsys):

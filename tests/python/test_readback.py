@@ -794,7 +794,10 @@ def test_strokes_whose_names_end_in_blanks_are_recognized(desk, capsys, name):
 def test_a_program_in_another_language_is_refused(desk, capsys):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     status, _, ((_, reported),) = in_json(capsys, "check", "two.ngc", "--cell", "ur5e")
-    assert status == 1 and agrees(reported, "program-format ur5e .script")
+    assert status == 1 and agrees(reported, "program-for-other ur5e linuxcnc-3axis")
+    (desk / "two.script").write_bytes((desk / "two.ngc").read_bytes())
+    status, _, ((_, reported),) = in_json(capsys, "check", "two.script")
+    assert status == 1 and agrees(reported, "program-format linuxcnc-3axis .ngc")
 
 
 def test_a_stroke_in_parts_is_one_stroke_of_the_drawing(desk, capsys):

@@ -384,3 +384,14 @@ def test_tiny_steps_after_a_landing_on_leaning_paper_are_read_as_written():
         steps = [(k * 0.0023 * np.cos(turn), k * 0.0023 * np.sin(turn)) for k in range(5)]
         near = [(x + dx, y + dy, -3.0) for dx, dy in steps]
         assert found_by_check([(x, y, 0.0), *near, (x + 5, y + 5, -3.0), (x + 5, y + 5, 0.0)], [], cell)[1] is None
+
+
+def test_a_steep_step_as_short_as_rounding_is_read_as_written():
+    """Rounding makes the step vertical. A vertical step of the same height would be rounded to nothing."""
+    chance = random.Random("short steep steps")
+    cell = cell_of("linuxcnc-3axis", 3, paper=Paper((0.5, 0.0, 0.0), (-8.5, -6.0, 49.0)))
+    for _ in range(40):
+        x, y, turn = chance.uniform(20, 40), chance.uniform(20, 40), chance.uniform(0, 2 * np.pi)
+        step = (0.0018 * np.cos(turn), 0.0018 * np.sin(turn), chance.uniform(0.0014, 0.0026))
+        poses = [(x, y, 0.0), (x + 5, y, -3.0), (x + 5 + step[0], y + step[1], -3.0 + step[2]), (x + 9, y + 5, 0.0)]
+        assert found_by_check(poses, [], cell)[1] is None

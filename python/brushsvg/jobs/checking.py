@@ -28,6 +28,7 @@ from ..machine.limits.paint_on_sheet import job_bounds_mm
 from ..machine.moves import duration_s
 from ..machine.paint_reload import split_into_loads
 from ..machine.posts import GCODE, POSTS, Post
+from ..machine.posts.text import NAMED, plain_text, spelled
 from ..machine.setup_programs import round_outwards
 from ..machine.writer import called_programs, list_arm_notices, parted_post, report_renamed
 from ..model.library import brush_names, find_brush
@@ -167,6 +168,8 @@ def check_program(
         tolerance_mm = header.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
         cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
         brush = load_brush(chosen.brush) or find_brush(header.brush)
+        _require_named("cell", header.cell, cell.name)
+        _require_named("brush", header.brush, brush.name)
         with files.located_errors():
             read = read_program(files.text, suffix, cell)
     if chosen.input is None:
@@ -177,6 +180,15 @@ def check_program(
     if header.border_mm or header.heights_mm or header.first_mm:
         return _check_setup_program(program, chosen, stage, warn)
     return _check_painting(program, chosen, stage, warn)
+
+
+def _require_named(kind: str, name_in_header: str, name: str) -> None:
+    """Raise Error for a cell or brush that is not the one that the program was written for."""
+    written, given = ("".join(spelled(plain_text(each, NAMED)).split()) for each in (name_in_header, name))
+    if written != given:
+        sentence = f"the program was written for {kind} {name_in_header!r}, not for {name!r}"
+        advice = f"give the {kind} of the program, or convert the drawing again"
+        raise Error(sentence, code="program-for-other", advice=advice)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, least_move_mm, robot_from_paper, unit_mm, value_mm
+from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, min_part_mm, robot_from_paper, unit_mm, value_mm
 from ..machine.frames import is_upright, transform_points
 from ..machine.limits.move_extents import make_paths
 from ..machine.limits.paint_on_sheet import find_paint_off_sheet
@@ -409,11 +409,11 @@ def _touch_to_pass(section: ReadSection, track: Track, on: slice, cell: Cell, le
     landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
     speed = max(speeds, default=0.0)
     # After rounding, a straight move down has a small sideways part. The slower feed shows the intention. A servo is
-    # slow on every steep part of its path. Without its sideways part, the shortest move would no longer be a move.
+    # slow on every steep part of its path. Without its sideways part, a short move could be rounded to nothing.
     if leans or cell.servo is None:
         sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
         slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
-        rises = np.abs(np.diff(poses[:, 2])) > least_move_mm(cell)
+        rises = np.abs(np.diff(poses[:, 2])) > min_part_mm(cell)
         straight = np.flatnonzero(slower & rises & (sideways < 2 * unit_mm(cell)))
         falls = poses[straight + 1, 2] < poses[straight, 2]
         # The deeper pose keeps its place, and so its distance from the next pose along the stroke.
