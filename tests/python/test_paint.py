@@ -298,7 +298,8 @@ def test_lower_paper_does_not_lower_the_vessels_on_the_table(tmp_path, capsys):
         ("high", replace(pot, rim_mm=4.5)),
         ("hand", replace(pot, rim_mm=4.5, depth_mm=0.0, by_hand=True)),
     ):
-        cell = replace(cell_with(Reload("stroke"), station), name=name)  # the safe height is 10 mm, the clearance 1 mm
+        # the safe height is 10 mm, the clearance 1 mm
+        cell = replace(cell_with(Reload("stroke"), station), name="painter")
         (tmp_path / f"{name}.toml").write_text(write_cell(cell))
 
     def run(command, name, z_offset):
